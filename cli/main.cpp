@@ -1,0 +1,46 @@
+#include <fmt/format.h>
+
+#include "command.h"
+#include "mien/core/error.h"
+#include "mien/core/parallel.h"
+
+namespace {
+
+void add_common_flags(CLI::App& app, mien::cli::Common& common) {
+  app.add_flag("--json", common.json, "Print the result as one JSON object on stdout");
+  app.add_flag("--quiet", common.quiet, "Print nothing but errors");
+  app.add_option("--threads", common.threads, "Threads to use; 0: all cores")->capture_default_str();
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app("mien: create a facial rig once, use it on many");
+  app.name("mien");
+  app.require_subcommand(1);
+  mien::cli::Common common;
+  mien::cli::add_sample(app, common);
+  mien::cli::add_inspect(app, common);
+  mien::cli::add_assemble(app, common);
+  mien::cli::add_transfer(app, common);
+  mien::cli::add_render(app, common);
+  for (CLI::App* command : app.get_subcommands({})) {
+    add_common_flags(*command, common);
+    command->parse_complete_callback([&common] { mien::set_thread_count(common.threads); });
+  }
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& e) {
+    return app.exit(e) == 0 ? 0 : 2;
+  } catch (const mien::Error& e) {
+    fmt::print(stderr, "mien: {}\n", e.what());
+    return 1;
+  } catch (const std::bad_alloc&) {
+    fmt::print(stderr, "mien: out of memory\n");
+    return 1;
+  } catch (const std::exception& e) {
+    fmt::print(stderr, "mien: {}\n", e.what());
+    return 1;
+  }
+  return 0;
+}

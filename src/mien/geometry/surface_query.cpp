@@ -1,0 +1,158 @@
+// Embree keeps floats; hits are therefore refined here in double from the caller's own positions, so that a point on a
+// vertex comes back as that vertex. Embree's robust mode matters: without it rays slip through shared edges of lips.
+#include "mien/geometry/surface_query.h"
+
+#include <embree3/rtcore.h>
+
+#include <string>
+
+#include "mien/core/error.h"
+#include "mien/geometry/triangle.h"
+
+namespace mien {
+
+struct SurfaceQuery::Scene {
+  PointsD positions;
+  Triangles triangles;
+  Points embree_positions;
+  RTCDevice device = nullptr;
+  RTCScene scene = nullptr;
+
+  ~Scene() {
+    if (scene) rtcReleaseScene(scene);
+    if (device) rtcReleaseDevice(device);
+  }
+
+  Eigen::Vector3d corner(int triangle, int k) const {
+    return positions.row(triangles(triangle, k)).transpose();
+  }
+};
+
+namespace {
+
+struct ClosestSearch {
+  const PointsD& positions;
+  const Triangles& triangles;
+  const SurfaceQuery::Accept* accept;
+  Eigen::Vector3d point;
+  SurfaceQuery::Hit best;
+};
+
+bool visit_triangle(RTCPointQueryFunctionArguments* args) {
+  auto& search = *static_cast<ClosestSearch*>(args->userPtr);
+  const int t = static_cast<int>(args->primID);
+  const auto corner = [&](int k) { return Eigen::Vector3d(search.positions.row(search.triangles(t, k))); };
+  const TrianglePoint found = closest_point_on_triangle(search.point, corner(0), corner(1), corner(2));
+  const double distance = (found.position - search.point).norm();
+  const bool closer = distance < search.best.distance ||
+                      (distance == search.best.distance && t < search.best.triangle);
+  if (!closer || (search.accept && !(*search.accept)(t, found.position))) return false;
+  search.best = {t, found.barycentric, found.position, distance};
+  // A little slack keeps equally close triangles in the search, so that the tie goes to the lowest number.
+  const float radius = static_cast<float>(distance * (1 + 1e-6));
+  if (radius >= args->query->radius) return false;
+  args->query->radius = radius;
+  return true;
+}
+
+void check_input(const PointsD& positions, const Triangles& triangles) {
+  if (triangles.rows() == 0) throw invalid_input("surface query", "has no triangles", "a mesh with faces");
+  if (triangles.minCoeff() < 0 || triangles.maxCoeff() >= positions.rows())
+    throw invalid_input("surface query", "a triangle names a vertex out of range",
+                        "vertices from 0 to " + std::to_string(positions.rows() - 1));
+  if (!positions.allFinite()) throw invalid_input("surface query", "a position is not finite");
+}
+
+RTCRay make_ray(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, double near, double far) {
+  RTCRay ray{};
+  ray.org_x = static_cast<float>(origin.x());
+  ray.org_y = static_cast<float>(origin.y());
+  ray.org_z = static_cast<float>(origin.z());
+  ray.dir_x = static_cast<float>(direction.x());
+  ray.dir_y = static_cast<float>(direction.y());
+  ray.dir_z = static_cast<float>(direction.z());
+  ray.tnear = static_cast<float>(near);
+  ray.tfar = static_cast<float>(far);
+  ray.mask = ~0u;
+  return ray;
+}
+
+}  // namespace
+
+SurfaceQuery::SurfaceQuery(const Points& positions, const Triangles& triangles)
+    : SurfaceQuery(PointsD(positions.cast<double>()), triangles) {}
+
+SurfaceQuery::SurfaceQuery(const PointsD& positions, const Triangles& triangles)
+    : scene_(std::make_unique<Scene>()) {
+  check_input(positions, triangles);
+  scene_->positions = positions;
+  scene_->triangles = triangles;
+  // Embree reads 16 bytes at the last vertex: one row of padding.
+  scene_->embree_positions = Points::Zero(positions.rows() + 1, 3);
+  scene_->embree_positions.topRows(positions.rows()) = positions.cast<float>();
+  scene_->device = rtcNewDevice(nullptr);
+  scene_->scene = rtcNewScene(scene_->device);
+  rtcSetSceneFlags(scene_->scene, RTC_SCENE_FLAG_ROBUST);
+  RTCGeometry geometry = rtcNewGeometry(scene_->device, RTC_GEOMETRY_TYPE_TRIANGLE);
+  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                             scene_->embree_positions.data(), 0, 3 * sizeof(float), positions.rows());
+  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, scene_->triangles.data(), 0,
+                             3 * sizeof(int), triangles.rows());
+  rtcSetGeometryPointQueryFunction(geometry, visit_triangle);
+  rtcCommitGeometry(geometry);
+  rtcAttachGeometry(scene_->scene, geometry);
+  rtcReleaseGeometry(geometry);
+  rtcCommitScene(scene_->scene);
+}
+
+SurfaceQuery::~SurfaceQuery() = default;
+SurfaceQuery::SurfaceQuery(SurfaceQuery&&) noexcept = default;
+SurfaceQuery& SurfaceQuery::operator=(SurfaceQuery&&) noexcept = default;
+
+SurfaceQuery::Hit SurfaceQuery::closest(const Eigen::Vector3d& point, double max_distance) const {
+  return closest(point, max_distance, nullptr);
+}
+
+SurfaceQuery::Hit SurfaceQuery::closest(const Eigen::Vector3d& point, double max_distance,
+                                        const Accept& accept) const {
+  ClosestSearch search{scene_->positions, scene_->triangles, accept ? &accept : nullptr, point, {}};
+  search.best.distance = max_distance;
+  search.best.triangle = std::numeric_limits<int>::max();
+  RTCPointQuery query{};
+  query.x = static_cast<float>(point.x());
+  query.y = static_cast<float>(point.y());
+  query.z = static_cast<float>(point.z());
+  query.radius = static_cast<float>(max_distance);
+  RTCPointQueryContext context;
+  rtcInitPointQueryContext(&context);
+  rtcPointQuery(scene_->scene, &query, &context, nullptr, &search);
+  if (search.best.triangle == std::numeric_limits<int>::max()) return Hit{};
+  return search.best;
+}
+
+SurfaceQuery::Hit SurfaceQuery::first_along(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction,
+                                            double near, double far) const {
+  RTCRayHit ray{};
+  ray.ray = make_ray(origin, direction, near, far);
+  ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  rtcIntersect1(scene_->scene, &context, &ray);
+  if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID) return Hit{};
+  const int t = static_cast<int>(ray.hit.primID);
+  const Eigen::Vector3d weights(1.0 - ray.hit.u - ray.hit.v, ray.hit.u, ray.hit.v);
+  const Eigen::Vector3d position =
+      weights[0] * scene_->corner(t, 0) + weights[1] * scene_->corner(t, 1) + weights[2] * scene_->corner(t, 2);
+  return {t, weights, position, static_cast<double>(ray.ray.tfar)};
+}
+
+bool SurfaceQuery::occluded(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, double near,
+                            double far) const {
+  RTCRay ray = make_ray(origin, direction, near, far);
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  rtcOccluded1(scene_->scene, &context, &ray);
+  return ray.tfar < 0;
+}
+
+}  // namespace mien
