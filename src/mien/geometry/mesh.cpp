@@ -1,5 +1,7 @@
 #include "mien/geometry/mesh.h"
 
+#include <Eigen/Geometry>
+
 namespace mien {
 
 void Faces::push_back(std::span<const int> face) {
