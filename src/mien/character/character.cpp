@@ -9,7 +9,8 @@ namespace {
 
 template <class Items>
 int find_by_name(const Items& items, std::string_view name) {
-  const auto found = std::find_if(items.begin(), items.end(), [&](const auto& item) { return item.name == name; });
+  const auto found =
+      std::find_if(items.begin(), items.end(), [&](const auto& item) { return item.name == name; });
   return found == items.end() ? -1 : static_cast<int>(found - items.begin());
 }
 
@@ -29,11 +30,26 @@ double Clip::duration() const {
   return last;
 }
 
-int find_part(const Character& character, std::string_view name) { return find_by_name(character.parts, name); }
-int find_shape(const Character& character, std::string_view name) { return find_by_name(character.shapes, name); }
-int find_node(const Character& character, std::string_view name) { return find_by_name(character.nodes, name); }
+int find_part(const Character& character, std::string_view name) {
+  return find_by_name(character.parts, name);
+}
+int find_shape(const Character& character, std::string_view name) {
+  return find_by_name(character.shapes, name);
+}
+int find_node(const Character& character, std::string_view name) {
+  return find_by_name(character.nodes, name);
+}
 
 std::vector<Eigen::Matrix4d> model_matrices(const Character& character) {
+  std::vector<Eigen::Matrix4d> locals;
+  locals.reserve(character.nodes.size());
+  for (const Node& node : character.nodes)
+    locals.push_back(node.has_matrix ? node.matrix : node.rest.matrix());
+  return model_matrices(character, locals);
+}
+
+std::vector<Eigen::Matrix4d> model_matrices(const Character& character,
+                                            const std::vector<Eigen::Matrix4d>& locals) {
   const auto& nodes = character.nodes;
   const int count = static_cast<int>(nodes.size());
   std::vector<Eigen::Matrix4d> model(count);
@@ -51,8 +67,7 @@ std::vector<Eigen::Matrix4d> model_matrices(const Character& character) {
     }
     for (; !path.empty(); path.pop_back()) {
       const int n = path.back();
-      const Eigen::Matrix4d local = nodes[n].has_matrix ? nodes[n].matrix : nodes[n].rest.matrix();
-      model[n] = nodes[n].parent == -1 ? local : Eigen::Matrix4d(model[nodes[n].parent] * local);
+      model[n] = nodes[n].parent == -1 ? locals[n] : Eigen::Matrix4d(model[nodes[n].parent] * locals[n]);
       state[n] = 2;
     }
   }

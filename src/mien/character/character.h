@@ -1,12 +1,13 @@
 #pragma once
-/// A rigged face: what every file is read into, every operation takes and gives, and every file is written from.
+/// A rigged face: what every file is read into, every operation takes and gives, and every file is written
+/// from.
 ///
-/// `Character` is a plain value: copy it, change it, compare its parts. An empty part is an absent part. It is the
-/// editable form; nothing in it is compiled for speed. `validate` lists what is wrong with one.
+/// `Character` is a plain value: copy it, change it, compare its parts. An empty part is an absent part. It
+/// is the editable form; nothing in it is compiled for speed. `validate` lists what is wrong with one.
 ///
-/// Spaces: a part's positions and deltas are in its node's local space when the part has no skin, and in model space
-/// (the bind pose) when it has one, as in glTF. `model_matrices` gives the nodes' transforms to model space.
-/// Units are the file's own; nothing depends on which.
+/// Spaces: a part's positions and deltas are in its node's local space when the part has no skin, and in
+/// model space (the bind pose) when it has one, as in glTF. `model_matrices` gives the nodes' transforms to
+/// model space. Units are the file's own; nothing depends on which.
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
@@ -27,14 +28,18 @@ struct Transform {
   Eigen::Matrix4d matrix() const;
 };
 
-/// One transform of the scene's hierarchy. A node that a skin lists is a joint; others group nodes or hold a part.
+/// One transform of the scene's hierarchy. A node that a skin lists is a joint; others group nodes or hold a
+/// part.
 struct Node {
   std::string name;
-  int parent = -1;    ///< index into Character::nodes, -1: a root. Parents may come after children; cycles are invalid
-  Transform rest;     ///< local, when nothing is animated
-  bool has_matrix = false;  ///< the file gave a matrix, kept in `matrix` because it may shear; `rest` is its best TRS
+  int parent =
+      -1;  ///< index into Character::nodes, -1: a root. Parents may come after children; cycles are invalid
+  Transform rest;  ///< local, when nothing is animated
+  bool has_matrix =
+      false;  ///< the file gave a matrix, kept in `matrix` because it may shear; `rest` is its best TRS
   Eigen::Matrix4d matrix = Eigen::Matrix4d::Identity();
-  std::string carried;  ///< JSON object text of members that mien only carries ("extras", "extensions", "camera")
+  std::string
+      carried;  ///< JSON object text of members that mien only carries ("extras", "extensions", "camera")
 };
 
 /// A list of joints that parts are bound to.
@@ -80,13 +85,15 @@ struct PartDelta {
 /// A sculpted change of the neutral, applied in proportion to its shape weight.
 struct Shape {
   std::string name;
-  std::vector<PartDelta> parts;  ///< ascending by part; an entry with no vertices: the file lists the shape there
-  double rest = 0;               ///< shape weight when nothing is animated
+  std::vector<PartDelta>
+      parts;        ///< ascending by part; an entry with no vertices: the file lists the shape there
+  double rest = 0;  ///< shape weight when nothing is animated
 };
 
 enum class Interpolation { step, linear, cubic_spline };
 
-/// One animated property. Values are interleaved by key; a cubic spline has (in-tangent, value, out-tangent) a key.
+/// One animated property. Values are interleaved by key; a cubic spline has (in-tangent, value, out-tangent)
+/// a key.
 struct Channel {
   enum class Property { translation, rotation, scale, shape_weight };
   Property property = Property::translation;
@@ -94,9 +101,11 @@ struct Channel {
   int shape = -1;  ///< for shape_weight (1 value): index into Character::shapes
   int part = -1;   ///< shape_weight on this part alone; -1: on every part that has the shape
   Interpolation interpolation = Interpolation::linear;
-  std::vector<float> times;   ///< seconds, strictly ascending
+  std::vector<float> times;  ///< seconds, strictly ascending
   std::vector<float> values;
-  int width() const { return property == Property::rotation ? 4 : property == Property::shape_weight ? 1 : 3; }
+  int width() const {
+    return property == Property::rotation ? 4 : property == Property::shape_weight ? 1 : 3;
+  }
 };
 
 struct Clip {
@@ -106,11 +115,11 @@ struct Clip {
   double duration() const;  ///< the last key's time in seconds; 0 without keys
 };
 
-/// A point that stays on a part's surface while the face moves: a convex combination of a face's corners, or one
-/// vertex.
+/// A point that stays on a part's surface while the face moves: a convex combination of a face's corners, or
+/// one vertex.
 struct SurfacePoint {
   int part = 0;
-  int face = -1;    ///< index into Mesh::faces, -1: `vertex` is used
+  int face = -1;  ///< index into Mesh::faces, -1: `vertex` is used
   int vertex = -1;
   /// Weights of the face's first corners as its fan triangle `corners` has them; they sum to one.
   Eigen::Vector3d barycentric = Eigen::Vector3d(1, 0, 0);
@@ -130,7 +139,8 @@ struct LandmarkCurve {
   int count = 2;
 };
 
-/// The looks that ride along: materials, textures and images are carried, not interpreted, but for base colours.
+/// The looks that ride along: materials, textures and images are carried, not interpreted, but for base
+/// colours.
 struct Material {
   std::string name;
   Eigen::Vector4f base_color = Eigen::Vector4f(0.8f, 0.8f, 0.8f, 1.f);
@@ -138,7 +148,7 @@ struct Material {
 };
 struct Image {
   std::string name, mime_type;
-  std::string uri;                   ///< as the file named it; empty when the bytes were embedded
+  std::string uri;  ///< as the file named it; empty when the bytes were embedded
   std::vector<unsigned char> bytes;
   std::string carried;
 };
@@ -169,6 +179,10 @@ int find_node(const Character& character, std::string_view name);
 /// #N matrices, node space to model space, for nodes in rest. Cost: linear.
 ///   throws  invalid_input: a cycle among the parents, a parent out of range
 std::vector<Eigen::Matrix4d> model_matrices(const Character& character);
+
+/// The same for nodes whose local matrices are `locals` (#N).
+std::vector<Eigen::Matrix4d> model_matrices(const Character& character,
+                                            const std::vector<Eigen::Matrix4d>& locals);
 
 /// Where a surface point is, in its part's space, on `positions` of that part (#V).
 Eigen::Vector3d position_of(const Mesh& mesh, const Points& positions, const SurfacePoint& point);

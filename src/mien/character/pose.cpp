@@ -1,5 +1,9 @@
 #include "mien/character/pose.h"
 
+#include <string>
+
+#include "mien/core/error.h"
+
 namespace mien {
 
 Pose rest_pose(const Character& character) {
@@ -9,6 +13,29 @@ Pose rest_pose(const Character& character) {
   pose.locals.reserve(character.nodes.size());
   for (const Node& node : character.nodes) pose.locals.push_back(node.rest);
   return pose;
+}
+
+namespace {
+
+bool at_rest(const Transform& local, const Transform& rest) {
+  return local.translation == rest.translation && local.rotation.coeffs() == rest.rotation.coeffs() &&
+         local.scale == rest.scale;
+}
+
+}  // namespace
+
+std::vector<Eigen::Matrix4d> model_matrices(const Character& character, const Pose& pose) {
+  if (pose.locals.size() != character.nodes.size())
+    throw invalid_input("pose", "has " + std::to_string(pose.locals.size()) + " local transforms",
+                        std::to_string(character.nodes.size()) + ", one a node");
+  std::vector<Eigen::Matrix4d> locals;
+  locals.reserve(character.nodes.size());
+  for (std::size_t n = 0; n < character.nodes.size(); ++n) {
+    const Node& node = character.nodes[n];
+    const bool keep = node.has_matrix && at_rest(pose.locals[n], node.rest);
+    locals.push_back(keep ? node.matrix : pose.locals[n].matrix());
+  }
+  return model_matrices(character, locals);
 }
 
 }  // namespace mien

@@ -11,15 +11,29 @@ namespace mien {
 struct ShapeWeights {
   Eigen::VectorXd values;
   explicit ShapeWeights(Eigen::VectorXd v) : values(std::move(v)) {}
-  explicit ShapeWeights(std::size_t count) : values(Eigen::VectorXd::Zero(static_cast<Eigen::Index>(count))) {}
+  explicit ShapeWeights(std::size_t count)
+      : values(Eigen::VectorXd::Zero(static_cast<Eigen::Index>(count))) {}
+};
+
+/// A shape weight on one part alone, in place of the pose's own.
+struct PartShapeWeight {
+  int part = 0, shape = 0;
+  double value = 0;
 };
 
 struct Pose {
-  ShapeWeights shape_weights;      ///< #S
-  std::vector<Transform> locals;   ///< #N, local transforms of Character::nodes
+  ShapeWeights shape_weights;     ///< #S
+  std::vector<Transform> locals;  ///< #N, local transforms of Character::nodes
+  std::vector<PartShapeWeight> part_shape_weights =
+      {};  ///< exceptions: a clip may animate one part's shape alone
 };
 
 /// The pose when nothing is animated: shapes at rest, nodes at rest.
 Pose rest_pose(const Character& character);
+
+/// #N matrices, node space to model space, in `pose`. A node whose local transform is its rest keeps the
+/// matrix that its file gave (it may shear).
+///   throws  invalid_input: a number of locals other than #N; cyclic parents
+std::vector<Eigen::Matrix4d> model_matrices(const Character& character, const Pose& pose);
 
 }  // namespace mien

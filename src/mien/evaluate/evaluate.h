@@ -10,14 +10,20 @@ namespace mien {
 
 /// Where every part's vertices are in `pose`, in model space, in file order.
 ///   returns  one #V x 3 a part
-///   throws   invalid_input: sizes of the pose that differ from the character's
+///   throws   invalid_input: sizes of the pose that differ from the character's, numbers in it that are not
+///   finite, a part
+///            that names a skin, joint or node out of range
 ///   cost     linear in moved vertices x active shapes, plus #V x influences
-/// Positions are neutral + sum of shape weight x delta, then skinned linearly by `joint matrix x inverse bind`; a part
-/// without a skin is carried by its node.
+/// Positions are neutral + sum of shape weight x delta, then skinned linearly by `joint matrix x inverse
+/// bind`; a part without a skin is carried by its node.
 std::vector<Points> evaluate(const Character& character, const Pose& pose);
 
-/// The character's pose at `seconds` of `clip`; what the clip does not animate is at rest. Times outside the clip
-/// hold the first or last key. STEP, LINEAR (rotations by slerp) and CUBICSPLINE as glTF 2.0 defines them.
+/// The character's pose at `seconds` of `clip`; what the clip does not animate is at rest. Times outside the
+/// clip hold the first or last key. STEP, LINEAR (rotations by slerp) and CUBICSPLINE as glTF 2.0 defines
+/// them. A channel for one part alone goes to Pose::part_shape_weights.
+///   throws   invalid_input: a channel without keys, with too few or too many values, or for a node or shape
+///   out of
+///            range; `seconds` that is not finite
 Pose sample_clip(const Character& character, const Clip& clip, double seconds);
 
 }  // namespace mien

@@ -1,0 +1,111 @@
+// glTF 2.0, section 3.11 and appendix C: how a channel is read between its keys.
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "mien/core/error.h"
+#include "mien/evaluate/evaluate.h"
+
+namespace mien {
+namespace {
+
+using Value = Eigen::Vector4d;  // the first `width` entries are used
+
+std::string place_of(const Clip& clip, std::size_t channel) {
+  return "clip " + clip.name + ", channel " + std::to_string(channel);
+}
+
+void check_channel(const Character& character, const Clip& clip, std::size_t index) {
+  const Channel& channel = clip.channels[index];
+  const std::size_t stride = channel.width() * (channel.interpolation == Interpolation::cubic_spline ? 3 : 1);
+  if (channel.times.empty()) throw invalid_input(place_of(clip, index), "has no keys", "at least one");
+  if (channel.values.size() != channel.times.size() * stride)
+    throw invalid_input(
+        place_of(clip, index), "has " + std::to_string(channel.values.size()) + " values",
+        std::to_string(channel.times.size() * stride) + ", " + std::to_string(stride) + " a key");
+  const bool weighs = channel.property == Channel::Property::shape_weight;
+  const int target = weighs ? channel.shape : channel.node;
+  const std::size_t count = weighs ? character.shapes.size() : character.nodes.size();
+  if (target < 0 || static_cast<std::size_t>(target) >= count)
+    throw invalid_input(place_of(clip, index),
+                        std::string("animates ") + (weighs ? "shape " : "node ") + std::to_string(target),
+                        "one from 0 to " + std::to_string(static_cast<int>(count) - 1));
+}
+
+/// The row-th group of `width` values: a key's value, or its tangents for a cubic spline.
+Value value_at(const Channel& channel, std::size_t row) {
+  Value value = Value::Zero();
+  for (int k = 0; k < channel.width(); ++k) value[k] = channel.values[row * channel.width() + k];
+  return value;
+}
+
+Value slerp(const Value& from, const Value& to, double u) {
+  const Eigen::Quaterniond a(from[3], from[0], from[1], from[2]), b(to[3], to[0], to[1], to[2]);
+  return a.normalized().slerp(u, b.normalized()).coeffs();
+}
+
+Value hermite(const Channel& channel, std::size_t key, double u, double seconds) {
+  const Value v0 = value_at(channel, 3 * key + 1), out0 = value_at(channel, 3 * key + 2);
+  const Value in1 = value_at(channel, 3 * key + 3), v1 = value_at(channel, 3 * key + 4);
+  const double u2 = u * u, u3 = u2 * u;
+  return (2 * u3 - 3 * u2 + 1) * v0 + (u3 - 2 * u2 + u) * seconds * out0 + (-2 * u3 + 3 * u2) * v1 +
+         (u3 - u2) * seconds * in1;
+}
+
+Value sample_channel(const Channel& channel, double seconds) {
+  const auto& times = channel.times;
+  const bool cubic = channel.interpolation == Interpolation::cubic_spline;
+  const auto key_value = [&](std::size_t key) { return value_at(channel, cubic ? 3 * key + 1 : key); };
+  if (!(seconds > times.front())) return key_value(0);
+  if (seconds >= times.back()) return key_value(times.size() - 1);
+  const auto next = std::upper_bound(times.begin(), times.end(), seconds,
+                                     [](double t, float key) { return t < static_cast<double>(key); });
+  const auto key = static_cast<std::size_t>(next - times.begin()) - 1;
+  if (channel.interpolation == Interpolation::step) return key_value(key);
+  const double span = static_cast<double>(times[key + 1]) - times[key];
+  const double u = (seconds - times[key]) / span;
+  if (cubic) return hermite(channel, key, u, span);
+  const Value from = key_value(key), to = key_value(key + 1);
+  if (channel.property == Channel::Property::rotation) return slerp(from, to, u);
+  return from + u * (to - from);
+}
+
+void set_shape_weight(const Channel& channel, double value, Pose& pose) {
+  if (channel.part < 0)
+    pose.shape_weights.values[channel.shape] = value;
+  else
+    pose.part_shape_weights.push_back({channel.part, channel.shape, value});
+}
+
+void apply(const Channel& channel, const Value& value, Pose& pose) {
+  switch (channel.property) {
+    case Channel::Property::translation:
+      pose.locals[channel.node].translation = value.head<3>();
+      break;
+    case Channel::Property::rotation:
+      pose.locals[channel.node].rotation =
+          Eigen::Quaterniond(value[3], value[0], value[1], value[2]).normalized();
+      break;
+    case Channel::Property::scale:
+      pose.locals[channel.node].scale = value.head<3>();
+      break;
+    case Channel::Property::shape_weight:
+      set_shape_weight(channel, value[0], pose);
+      break;
+  }
+}
+
+}  // namespace
+
+Pose sample_clip(const Character& character, const Clip& clip, double seconds) {
+  if (!std::isfinite(seconds))
+    throw invalid_input("clip " + clip.name, "is asked at a time that is not finite");
+  Pose pose = rest_pose(character);
+  for (std::size_t c = 0; c < clip.channels.size(); ++c) {
+    check_channel(character, clip, c);
+    apply(clip.channels[c], sample_channel(clip.channels[c], seconds), pose);
+  }
+  return pose;
+}
+
+}  // namespace mien
