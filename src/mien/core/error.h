@@ -2,9 +2,9 @@
 /// The one error type of mien.
 ///
 /// Every function of the library reports a failure by throwing `Error`. Its text is one line in the form
-/// `place: what is wrong; what would be right`; `in_file` puts the file's name in front of it, and the command line
-/// puts `mien: ` in front of that. A poor result (a fit that is far off, an iteration that did not converge) is not
-/// an error: it is a field of the result.
+/// `place: what is wrong; what would be right`; `in_file` puts the file's name in front of it, and the
+/// command line puts `mien: ` in front of that. A poor result (a fit that is far off, an iteration that did
+/// not converge) is not an error: it is a field of the result.
 
 #include <stdexcept>
 #include <string>

@@ -6,9 +6,9 @@
 
 namespace mien {
 
-/// Calls `body(begin, end)` on disjoint ranges that together cover [0, count). Ranges run in any order and at the
-/// same time: a body writes only to slots of its own range. Sums over all indices are the caller's to do in index
-/// order afterwards, so that the same input gives the same bytes at any thread count.
+/// Calls `body(begin, end)` on disjoint ranges that together cover [0, count). Ranges run in any order and at
+/// the same time: a body writes only to slots of its own range. Sums over all indices are the caller's to do
+/// in index order afterwards, so that the same input gives the same bytes at any thread count.
 ///   grain   the most indices in one range; the ranges depend on `count` and `grain` alone
 ///   throws  whatever a body throws
 void parallel_for(std::size_t count, std::size_t grain,

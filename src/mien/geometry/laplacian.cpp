@@ -7,7 +7,9 @@
 namespace mien {
 namespace {
 
-Eigen::Vector3d at(const PointsD& positions, int vertex) { return positions.row(vertex).transpose(); }
+Eigen::Vector3d at(const PointsD& positions, int vertex) {
+  return positions.row(vertex).transpose();
+}
 
 /// Cotangent of the angle at `apex` of the triangle (apex, a, b).
 double cotangent(const Eigen::Vector3d& apex, const Eigen::Vector3d& a, const Eigen::Vector3d& b) {

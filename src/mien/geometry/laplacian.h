@@ -10,10 +10,11 @@ namespace mien {
 
 using SparseMatrix = Eigen::SparseMatrix<double>;
 
-/// Cotangent Laplacian, #V x #V, symmetric, positive semi-definite, rows sum to zero: u' L u is the Dirichlet energy.
-/// Edge weights (cot a + cot b) / 2 below `least_weight` are raised to it, so that obtuse triangles cannot make the
-/// matrix indefinite.
-SparseMatrix cotangent_laplacian(const PointsD& positions, const Triangles& triangles, double least_weight = 0.02);
+/// Cotangent Laplacian, #V x #V, symmetric, positive semi-definite, rows sum to zero: u' L u is the Dirichlet
+/// energy. Edge weights (cot a + cot b) / 2 below `least_weight` are raised to it, so that obtuse triangles
+/// cannot make the matrix indefinite.
+SparseMatrix cotangent_laplacian(const PointsD& positions, const Triangles& triangles,
+                                 double least_weight = 0.02);
 
 /// #V: a third of the area of each vertex's triangles (barycentric areas).
 Eigen::VectorXd vertex_areas(const PointsD& positions, const Triangles& triangles);

@@ -10,7 +10,8 @@
 
 namespace mien {
 
-/// #V x 3, one row a vertex, in the file's own unit. Stored as float, as files have it; solvers work in double.
+/// #V x 3, one row a vertex, in the file's own unit. Stored as float, as files have it; solvers work in
+/// double.
 using Points = Eigen::Matrix<float, Eigen::Dynamic, 3, Eigen::RowMajor>;
 /// #V x 2.
 using Points2 = Eigen::Matrix<float, Eigen::Dynamic, 2, Eigen::RowMajor>;
@@ -21,8 +22,8 @@ using PointsD = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;
 /// #T x 3 vertex numbers, counter-clockwise seen from outside.
 using Triangles = Eigen::Matrix<int, Eigen::Dynamic, 3, Eigen::RowMajor>;
 
-/// Polygons of any size, one after the other. `faces[f]` is the span of face f's corner vertices, counter-clockwise
-/// seen from outside.
+/// Polygons of any size, one after the other. `faces[f]` is the span of face f's corner vertices,
+/// counter-clockwise seen from outside.
 class Faces {
  public:
   std::size_t size() const { return offsets_.size() - 1; }
@@ -36,7 +37,9 @@ class Faces {
   const std::vector<int>& corners() const { return corners_; }
   std::vector<int>& corners() { return corners_; }
   void push_back(std::span<const int> face);
-  void push_back(std::initializer_list<int> face) { push_back(std::span<const int>(face.begin(), face.size())); }
+  void push_back(std::initializer_list<int> face) {
+    push_back(std::span<const int>(face.begin(), face.size()));
+  }
   void reserve(std::size_t faces, std::size_t corners);
   bool operator==(const Faces&) const = default;
 
@@ -45,10 +48,10 @@ class Faces {
   std::vector<int> corners_;
 };
 
-/// One UV set. Without `corners` there is one coordinate a vertex (as in glTF, where a seam splits the vertex). With
-/// `corners`, `corners[c]` is the row of `coordinates` that face corner c uses (as in OBJ: a vertex on a seam has
-/// several); -1 marks a corner without a UV.
-/// v points up (0 at the image's lower edge), as in OBJ; readers of glTF flip it and writers flip it back.
+/// One UV set. Without `corners` there is one coordinate a vertex (as in glTF, where a seam splits the
+/// vertex). With `corners`, `corners[c]` is the row of `coordinates` that face corner c uses (as in OBJ: a
+/// vertex on a seam has several); -1 marks a corner without a UV. v points up (0 at the image's lower edge),
+/// as in OBJ; readers of glTF flip it and writers flip it back.
 struct UvSet {
   Points2 coordinates;
   std::vector<int> corners;
@@ -58,8 +61,8 @@ struct UvSet {
 /// A run of faces with one name and one material: an OBJ group, a glTF primitive.
 struct FaceGroup {
   std::string name;
-  int material = -1;                   ///< index into Appearance::materials; -1: none
-  int face_begin = 0, face_end = 0;    ///< [begin, end)
+  int material = -1;                     ///< index into Appearance::materials; -1: none
+  int face_begin = 0, face_end = 0;      ///< [begin, end)
   int vertex_begin = 0, vertex_end = 0;  ///< the vertex range that the faces index (groups may share one)
   bool operator==(const FaceGroup&) const = default;
 };
@@ -67,10 +70,10 @@ struct FaceGroup {
 struct Mesh {
   Points positions;  ///< #V
   Faces faces;
-  Points normals;             ///< #V, unit length, or no rows
-  Points4 tangents;           ///< #V, xyz unit and w = +-1 (glTF's meaning), or no rows
-  std::vector<UvSet> uvs;     ///< UV sets, in order
-  std::vector<Points4> colors;  ///< per vertex RGBA in [0, 1], or none
+  Points normals;                 ///< #V, unit length, or no rows
+  Points4 tangents;               ///< #V, xyz unit and w = +-1 (glTF's meaning), or no rows
+  std::vector<UvSet> uvs;         ///< UV sets, in order
+  std::vector<Points4> colors;    ///< per vertex RGBA in [0, 1], or none
   std::vector<FaceGroup> groups;  ///< in face order, covering all faces; empty: one nameless group
 
   std::size_t vertex_count() const { return static_cast<std::size_t>(positions.rows()); }

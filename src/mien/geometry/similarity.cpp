@@ -1,7 +1,7 @@
 #include "mien/geometry/similarity.h"
 
-#include <Eigen/SVD>
 #include <Eigen/LU>
+#include <Eigen/SVD>
 
 #include "mien/core/error.h"
 
@@ -28,7 +28,8 @@ Similarity fit_similarity(const PointsD& from, const PointsD& to) {
   const Eigen::Matrix3d covariance = b.transpose() * a;
   Eigen::JacobiSVD<Eigen::Matrix3d> svd(covariance, Eigen::ComputeFullU | Eigen::ComputeFullV);
   const Eigen::Vector3d s = svd.singularValues();
-  if (!(s[1] > 1e-12 * s[0])) throw invalid_input("similarity", "all points on one line", "points that span a plane");
+  if (!(s[1] > 1e-12 * s[0]))
+    throw invalid_input("similarity", "all points on one line", "points that span a plane");
   Eigen::Vector3d sign = Eigen::Vector3d::Ones();
   if ((svd.matrixU() * svd.matrixV().transpose()).determinant() < 0) sign[2] = -1;
   Similarity result;

@@ -1,5 +1,6 @@
-// Embree keeps floats; hits are therefore refined here in double from the caller's own positions, so that a point on a
-// vertex comes back as that vertex. Embree's robust mode matters: without it rays slip through shared edges of lips.
+// Embree keeps floats; hits are therefore refined here in double from the caller's own positions, so that a
+// point on a vertex comes back as that vertex. Embree's robust mode matters: without it rays slip through
+// shared edges of lips.
 #include "mien/geometry/surface_query.h"
 
 #include <embree3/rtcore.h>
@@ -44,8 +45,8 @@ bool visit_triangle(RTCPointQueryFunctionArguments* args) {
   const auto corner = [&](int k) { return Eigen::Vector3d(search.positions.row(search.triangles(t, k))); };
   const TrianglePoint found = closest_point_on_triangle(search.point, corner(0), corner(1), corner(2));
   const double distance = (found.position - search.point).norm();
-  const bool closer = distance < search.best.distance ||
-                      (distance == search.best.distance && t < search.best.triangle);
+  const bool closer =
+      distance < search.best.distance || (distance == search.best.distance && t < search.best.triangle);
   if (!closer || (search.accept && !(*search.accept)(t, found.position))) return false;
   search.best = {t, found.barycentric, found.position, distance};
   // A little slack keeps equally close triangles in the search, so that the tie goes to the lowest number.
@@ -96,8 +97,8 @@ SurfaceQuery::SurfaceQuery(const PointsD& positions, const Triangles& triangles)
   RTCGeometry geometry = rtcNewGeometry(scene_->device, RTC_GEOMETRY_TYPE_TRIANGLE);
   rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
                              scene_->embree_positions.data(), 0, 3 * sizeof(float), positions.rows());
-  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, scene_->triangles.data(), 0,
-                             3 * sizeof(int), triangles.rows());
+  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, scene_->triangles.data(),
+                             0, 3 * sizeof(int), triangles.rows());
   rtcSetGeometryPointQueryFunction(geometry, visit_triangle);
   rtcCommitGeometry(geometry);
   rtcAttachGeometry(scene_->scene, geometry);
@@ -141,8 +142,8 @@ SurfaceQuery::Hit SurfaceQuery::first_along(const Eigen::Vector3d& origin, const
   if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID) return Hit{};
   const int t = static_cast<int>(ray.hit.primID);
   const Eigen::Vector3d weights(1.0 - ray.hit.u - ray.hit.v, ray.hit.u, ray.hit.v);
-  const Eigen::Vector3d position =
-      weights[0] * scene_->corner(t, 0) + weights[1] * scene_->corner(t, 1) + weights[2] * scene_->corner(t, 2);
+  const Eigen::Vector3d position = weights[0] * scene_->corner(t, 0) + weights[1] * scene_->corner(t, 1) +
+                                   weights[2] * scene_->corner(t, 2);
   return {t, weights, position, static_cast<double>(ray.ray.tfar)};
 }
 

@@ -41,10 +41,12 @@ class SurfaceQuery {
   Hit closest(const Eigen::Vector3d& point, double max_distance, const Accept& accept) const;
 
   /// The first triangle along the ray from `origin` in `direction` (unit) between `near` and `far`.
-  Hit first_along(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, double near, double far) const;
+  Hit first_along(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, double near,
+                  double far) const;
 
   /// Whether anything lies on the ray between `near` and `far`.
-  bool occluded(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, double near, double far) const;
+  bool occluded(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, double near,
+                double far) const;
 
  private:
   struct Scene;

@@ -1,5 +1,6 @@
-// The system is solved in coordinates centred on the landmarks and scaled to a unit box: K and P then have entries of
-// one size, and a head in millimetres at body height is as well conditioned as one in metres at the origin.
+// The system is solved in coordinates centred on the landmarks and scaled to a unit box: K and P then have
+// entries of one size, and a head in millimetres at body height is as well conditioned as one in metres at
+// the origin.
 #include "mien/geometry/thin_plate_spline.h"
 
 #include <Eigen/Eigenvalues>
@@ -19,11 +20,13 @@ constexpr double coincident = 1e-9, coplanar = 1e-7;
 
 void check_landmarks(const PointsD& from, const PointsD& to) {
   if (from.rows() != to.rows())
-    throw invalid_input("thin-plate spline",
-                        std::to_string(from.rows()) + " landmarks before and " + std::to_string(to.rows()) + " after",
-                        "as many on both sides");
+    throw invalid_input(
+        "thin-plate spline",
+        std::to_string(from.rows()) + " landmarks before and " + std::to_string(to.rows()) + " after",
+        "as many on both sides");
   if (from.rows() < 4)
-    throw invalid_input("thin-plate spline", "has " + std::to_string(from.rows()) + " landmarks", "4 or more");
+    throw invalid_input("thin-plate spline", "has " + std::to_string(from.rows()) + " landmarks",
+                        "4 or more");
   if (!from.allFinite() || !to.allFinite())
     throw invalid_input("thin-plate spline", "a landmark is not finite", "finite coordinates");
 }
@@ -38,7 +41,8 @@ void check_normalised(const PointsD& centres) {
   const PointsD centred = centres.rowwise() - centres.colwise().mean();
   const Eigen::JacobiSVD<Eigen::MatrixXd> svd(centred);
   if (svd.singularValues()[2] < coplanar * svd.singularValues()[0])
-    throw invalid_input("thin-plate spline", "all landmarks lie in one plane", "one landmark or more off that plane");
+    throw invalid_input("thin-plate spline", "all landmarks lie in one plane",
+                        "one landmark or more off that plane");
 }
 
 Eigen::MatrixXd kernel_matrix(const PointsD& centres) {
@@ -55,8 +59,8 @@ Eigen::MatrixXd affine_rows(const PointsD& centres) {
 }
 
 ThinPlateSpline::PrincipalWarps warps_of(const PointsD& centres) {
-  // Restricted to the space P' w = 0 (basis Z) the bending energy is -(Z' K Z)^-1 up to scale; its eigenvectors in
-  // that space, mapped back, are the principal warps of L_n^-1.
+  // Restricted to the space P' w = 0 (basis Z) the bending energy is -(Z' K Z)^-1 up to scale; its
+  // eigenvectors in that space, mapped back, are the principal warps of L_n^-1.
   const Eigen::Index n = centres.rows();
   const Eigen::HouseholderQR<Eigen::MatrixXd> qr(affine_rows(centres));
   const Eigen::MatrixXd q = qr.householderQ();
@@ -105,15 +109,18 @@ PointsD ThinPlateSpline::operator()(const PointsD& points) const {
   PointsD result(points.rows(), 3);
   constexpr std::size_t block = 256;
   parallel_for(static_cast<std::size_t>(points.rows()), block, [&](std::size_t begin, std::size_t end) {
-    const Eigen::Index rows = static_cast<Eigen::Index>(end - begin), first = static_cast<Eigen::Index>(begin);
-    // Column by column, so that the distance to one landmark is computed for the whole block in vector registers.
-    const Eigen::Matrix<double, Eigen::Dynamic, 3> x = (points.middleRows(first, rows).rowwise() - shift_) * scale_;
+    const Eigen::Index rows = static_cast<Eigen::Index>(end - begin),
+                       first = static_cast<Eigen::Index>(begin);
+    // Column by column, so that the distance to one landmark is computed for the whole block in vector
+    // registers.
+    const Eigen::Matrix<double, Eigen::Dynamic, 3> x =
+        (points.middleRows(first, rows).rowwise() - shift_) * scale_;
     Eigen::Matrix<double, Eigen::Dynamic, 3> y = x * affine_.bottomRows<3>();
     y.rowwise() += affine_.row(0);
     Eigen::ArrayXd distance(rows);
     for (Eigen::Index i = 0; i < centres_.rows(); ++i) {
-      distance = ((x.col(0).array() - centres_(i, 0)).square() + (x.col(1).array() - centres_(i, 1)).square() +
-                  (x.col(2).array() - centres_(i, 2)).square())
+      distance = ((x.col(0).array() - centres_(i, 0)).square() +
+                  (x.col(1).array() - centres_(i, 1)).square() + (x.col(2).array() - centres_(i, 2)).square())
                      .sqrt();
       for (int k = 0; k < 3; ++k) y.col(k).array() += weights_(i, k) * distance;
     }

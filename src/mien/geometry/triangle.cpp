@@ -44,8 +44,8 @@ TrianglePoint closest_point_on_triangle(const Eigen::Vector3d& p, const Eigen::V
   return best;
 }
 
-Eigen::Vector3d barycentric_on_plane(const Eigen::Vector3d& p, const Eigen::Vector3d& a, const Eigen::Vector3d& b,
-                                     const Eigen::Vector3d& c) {
+Eigen::Vector3d barycentric_on_plane(const Eigen::Vector3d& p, const Eigen::Vector3d& a,
+                                     const Eigen::Vector3d& b, const Eigen::Vector3d& c) {
   const Eigen::Vector3d ab = b - a, ac = c - a, ap = p - a, normal = ab.cross(ac);
   const double squared_area = normal.squaredNorm();
   if (!(squared_area > 0)) return {1, 0, 0};

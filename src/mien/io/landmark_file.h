@@ -15,7 +15,8 @@ struct LandmarkSet {
 
 /// POINT is {"vertex": 17}, {"part": "Skin", "vertex": 17}, {"face": 3, "barycentric": [a, b, c]} or
 /// {"position": [x, y, z]} in model space (goes to the closest surface point of `character`).
-///   throws  Error: not JSON, an unknown member, a part, vertex or face that `character` does not have, weights that
+///   throws  Error: not JSON, an unknown member, a part, vertex or face that `character` does not have,
+///   weights that
 ///           are negative or do not sum to one, numbers that are not finite, a curve of fewer than two points
 LandmarkSet read_landmarks(const std::filesystem::path& path, const Character& character);
 

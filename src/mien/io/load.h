@@ -1,5 +1,6 @@
 #pragma once
-/// Any supported file into a Character, a Character into any supported file; the format follows the extension.
+/// Any supported file into a Character, a Character into any supported file; the format follows the
+/// extension.
 
 #include <filesystem>
 
