@@ -1,5 +1,6 @@
 #include "mien/geometry/laplacian.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <numeric>
 #include <utility>

@@ -1,0 +1,108 @@
+#include "mien/transfer/detail/matching.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+
+#include "mien/core/parallel.h"
+
+namespace mien::detail {
+namespace {
+
+/// Outer skin, cavity, or the rim between, which goes with both.
+bool may_match(double a, double b) {
+  constexpr double cavity = 0.15, skin = 0.4;
+  return !((a < cavity && b > skin) || (a > skin && b < cavity));
+}
+
+double interpolate(const Eigen::VectorXd& values, const Triangles& triangles, const SurfaceQuery::Hit& hit) {
+  double sum = 0;
+  for (int k = 0; k < 3; ++k) sum += hit.barycentric[k] * values[triangles(hit.triangle, k)];
+  return sum;
+}
+
+bool on_border(const MatchSurface& surface, const SurfaceQuery::Hit& hit) {
+  for (int k = 0; k < 3; ++k)
+    if (hit.barycentric[k] > 1e-6 && !surface.boundary[surface.triangles(hit.triangle, k)]) return false;
+  return true;
+}
+
+/// For each vertex of `from` its match on `to`; triangle -1 where the gates reject.
+std::vector<SurfaceQuery::Hit> match(const MatchSurface& from, const MatchSurface& to, const MatchOptions& options) {
+  std::vector<SurfaceQuery::Hit> hits(static_cast<std::size_t>(from.positions.rows()));
+  parallel_for(hits.size(), 64, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t v = begin; v < end; ++v)
+      hits[v] = to.query.closest(from.positions.row(static_cast<Eigen::Index>(v)).transpose());
+  });
+  std::vector<double> distances(hits.size());
+  std::transform(hits.begin(), hits.end(), distances.begin(), [](const auto& hit) { return hit.distance; });
+  std::nth_element(distances.begin(), distances.begin() + distances.size() / 2, distances.end());
+  const double reach = std::max(options.least_reach, 3 * distances[distances.size() / 2]);
+  for (std::size_t v = 0; v < hits.size(); ++v) {
+    SurfaceQuery::Hit& hit = hits[v];
+    const Eigen::Index row = static_cast<Eigen::Index>(v);
+    const bool take = hit.distance <= reach && !on_border(to, hit) &&
+                      from.normals.row(row).dot(to.triangle_normal(hit.triangle)) > options.least_cosine &&
+                      may_match(from.openness[row], interpolate(to.openness, to.triangles, hit));
+    if (!take) hit.triangle = -1;
+  }
+  return hits;
+}
+
+Eigen::Vector3d smooth_normal(const MatchSurface& surface, const SurfaceQuery::Hit& hit) {
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero();
+  for (int k = 0; k < 3; ++k)
+    normal += hit.barycentric[k] * surface.normals.row(surface.triangles(hit.triangle, k)).transpose();
+  const double length = normal.norm();
+  return length > 0 ? Eigen::Vector3d(normal / length) : surface.triangle_normal(hit.triangle);
+}
+
+}  // namespace
+
+MatchSurface::MatchSurface(const PointsD& p, const Triangles& t, const Eigen::VectorXd& o, const Eigen::VectorXd& m)
+    : positions(p),
+      normals(vertex_normals(p, t)),
+      triangles(t),
+      openness(o),
+      masses(m),
+      boundary(boundary_vertices(static_cast<std::size_t>(p.rows()), t)),
+      query(p, t) {}
+
+Eigen::Vector3d MatchSurface::triangle_normal(int triangle) const {
+  const Eigen::Vector3d a = positions.row(triangles(triangle, 0)).transpose();
+  const Eigen::Vector3d b = positions.row(triangles(triangle, 1)).transpose();
+  const Eigen::Vector3d c = positions.row(triangles(triangle, 2)).transpose();
+  return (b - a).cross(c - a).normalized();
+}
+
+std::vector<Wish> match_both_ways(const MatchSurface& moving, const MatchSurface& fixed, const MatchOptions& options) {
+  std::vector<Wish> wishes;
+  wishes.reserve(static_cast<std::size_t>(moving.positions.rows() + fixed.positions.rows()));
+  const auto forward = match(moving, fixed, options);
+  for (std::size_t v = 0; v < forward.size(); ++v) {
+    const SurfaceQuery::Hit& hit = forward[v];
+    if (hit.triangle < 0) continue;
+    const int vertex = static_cast<int>(v);
+    const double mass = moving.masses[vertex];
+    wishes.push_back({{vertex, vertex, vertex}, {1, 0, 0}, hit.position, smooth_normal(fixed, hit), mass,
+                      options.tangential * mass});
+  }
+  const auto backward = match(fixed, moving, options);
+  for (std::size_t v = 0; v < backward.size(); ++v) {
+    const SurfaceQuery::Hit& hit = backward[v];
+    if (hit.triangle < 0) continue;
+    const Eigen::Index row = static_cast<Eigen::Index>(v);
+    Wish wish;
+    for (int k = 0; k < 3; ++k) {
+      wish.vertices[k] = moving.triangles(hit.triangle, k);
+      wish.weights[k] = hit.barycentric[k];
+    }
+    wish.goal = fixed.positions.row(row).transpose();
+    wish.axis = fixed.normals.row(row).transpose();
+    wish.along = fixed.masses[row];
+    wish.across = options.tangential * fixed.masses[row];
+    wishes.push_back(wish);
+  }
+  return wishes;
+}
+
+}  // namespace mien::detail

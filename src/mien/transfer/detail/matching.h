@@ -1,0 +1,34 @@
+#pragma once
+/// Closest points between the moving source and the target, with the gates that keep lips, lids and nostrils apart.
+
+#include <vector>
+
+#include "mien/geometry/surface_query.h"
+#include "mien/transfer/detail/displacement_solver.h"
+
+namespace mien::detail {
+
+/// A surface with what matching asks of it.
+struct MatchSurface {
+  PointsD positions, normals;
+  Triangles triangles;
+  Eigen::VectorXd openness, masses;
+  std::vector<char> boundary;  // vertices on an open border
+  SurfaceQuery query;
+
+  MatchSurface(const PointsD& positions, const Triangles& triangles, const Eigen::VectorXd& openness,
+               const Eigen::VectorXd& masses);
+  Eigen::Vector3d triangle_normal(int triangle) const;
+};
+
+struct MatchOptions {
+  double least_cosine = 0.5;   ///< of the angle between the normals
+  double least_reach = 0.01;   ///< a match further than max(this, 3 x median distance) is rejected
+  double tangential = 0.1;     ///< tangential share of a plane's pull
+};
+
+/// Wishes that bring the moving vertices onto the fixed surface and the fixed vertices onto the moving surface, each
+/// direction's weights summing to about one. Vertices are those of `moving`.
+std::vector<Wish> match_both_ways(const MatchSurface& moving, const MatchSurface& fixed, const MatchOptions& options);
+
+}  // namespace mien::detail

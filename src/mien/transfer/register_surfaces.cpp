@@ -1,0 +1,94 @@
+#include "mien/transfer/register_surfaces.h"
+
+#include <algorithm>
+#include <array>
+
+#include "mien/core/error.h"
+#include "mien/geometry/laplacian.h"
+#include "mien/geometry/openness.h"
+#include "mien/geometry/thin_plate_spline.h"
+#include "mien/transfer/detail/matching.h"
+
+namespace mien {
+namespace {
+
+struct Stage {
+  double stiffness, landmarks;
+};
+/// From the whole face's proportions down to features of a few edges.
+constexpr std::array<Stage, 11> schedule{{{10, .1},
+                                          {3, .1},
+                                          {1, .1},
+                                          {.3, .1},
+                                          {.1, .03},
+                                          {.03, .01},
+                                          {.01, .003},
+                                          {.003, .001},
+                                          {.001, 0},
+                                          {3e-4, 0},
+                                          {1e-4, 0}}};
+
+/// The landmarks' box, held to what a face can be of its skin: few landmarks may sit close together.
+double face_size(const PointsD& landmarks, const PointsD& skin) {
+  const auto diagonal = [](const PointsD& p) { return (p.colwise().maxCoeff() - p.colwise().minCoeff()).norm(); };
+  return std::clamp(diagonal(landmarks), 0.35 * diagonal(skin), diagonal(skin));
+}
+
+Eigen::VectorXd normalised_areas(const Surface& surface) {
+  const Eigen::VectorXd areas = vertex_areas(surface.positions, surface.triangles);
+  return areas / areas.sum();
+}
+
+void add_landmark_wishes(const std::vector<SurfaceQuery::Hit>& at, const Triangles& triangles, const PointsD& goals,
+                         double weight, std::vector<detail::Wish>& wishes) {
+  if (weight <= 0) return;
+  for (std::size_t i = 0; i < at.size(); ++i) {
+    detail::Wish wish;
+    for (int k = 0; k < 3; ++k) {
+      wish.vertices[k] = triangles(at[i].triangle, k);
+      wish.weights[k] = at[i].barycentric[k];
+    }
+    wish.goal = goals.row(static_cast<Eigen::Index>(i)).transpose();
+    wish.along = wish.across = weight;
+    wishes.push_back(wish);
+  }
+}
+
+}  // namespace
+
+Registration register_surfaces(const Surface& source, const Surface& target, const PointsD& source_landmarks,
+                               const PointsD& target_landmarks, const RegistrationOptions& options) {
+  Registration result;
+  result.similarity = fit_similarity(source_landmarks, target_landmarks);
+  result.unit = face_size(target_landmarks, target.positions);
+  // From here on the face has size one and sits at its landmarks' centre.
+  const Eigen::RowVector3d centre = target_landmarks.colwise().mean();
+  const auto normalise = [&](const PointsD& p) { return PointsD((p.rowwise() - centre) / result.unit); };
+  const PointsD fixed_points = normalise(target.positions), goals = normalise(target_landmarks);
+
+  result.source_openness = openness(source.positions, source.triangles);
+  result.target_openness = openness(target.positions, target.triangles);
+  const detail::MatchSurface fixed(fixed_points, target.triangles, result.target_openness, normalised_areas(target));
+
+  const ThinPlateSpline spline(source_landmarks, goals, {options.smoothing, -1});
+  const PointsD start = spline(source.positions);
+  const detail::DisplacementSolver solver(start, source.triangles);
+  const SurfaceQuery source_query(source.positions, source.triangles);
+  std::vector<SurfaceQuery::Hit> landmark_hits;
+  for (Eigen::Index i = 0; i < source_landmarks.rows(); ++i)
+    landmark_hits.push_back(source_query.closest(source_landmarks.row(i).transpose()));
+
+  PointsD u = PointsD::Zero(start.rows(), 3);
+  for (std::size_t s = 0; s < schedule.size(); ++s) {
+    report_progress(options.progress, "registering", static_cast<double>(s) / schedule.size());
+    const detail::MatchSurface moving(start + u, source.triangles, result.source_openness, solver.masses());
+    std::vector<detail::Wish> wishes = detail::match_both_ways(moving, fixed, {});
+    add_landmark_wishes(landmark_hits, source.triangles, goals, options.landmark_trust * schedule[s].landmarks / 68,
+                        wishes);
+    u = solver.solve(schedule[s].stiffness, wishes, u);
+  }
+  result.guide = ((start + u) * result.unit).rowwise() + centre;
+  return result;
+}
+
+}  // namespace mien

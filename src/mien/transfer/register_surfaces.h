@@ -1,0 +1,47 @@
+#pragma once
+/// The guide: the source's surface warped by landmarks and brought onto the target, without folds and without gluing
+/// lips, lids and nostrils together.
+
+#include <Eigen/Core>
+
+#include "mien/core/progress.h"
+#include "mien/geometry/mesh.h"
+#include "mien/geometry/similarity.h"
+
+namespace mien {
+
+/// One connected or several connected skins: no inner parts.
+struct Surface {
+  PointsD positions;    ///< #V x 3
+  Triangles triangles;
+};
+
+struct RegistrationOptions {
+  /// Trust in the landmarks: the schedule's landmark weights are multiplied by it. 0 keeps them as the start only.
+  double landmark_trust = 1;
+  /// Smoothing of the starting spline (ThinPlateSpline::Options::smoothing). Landmarks that are clicked by hand are
+  /// off by half a percent of the face; meeting them exactly would bend the start.
+  double smoothing = 2e-2;
+  /// Lid and lip lines found by openness pull curve onto curve in the stiff stages.
+  bool feature_curves = true;
+  Progress progress;
+};
+
+struct Registration {
+  PointsD guide;          ///< #V source vertices on the target
+  Similarity similarity;  ///< the landmarks' best rotation, scale and translation, source to target
+  double unit = 1;        ///< the face's size in the target's units, the length that all limits are relative to
+  Eigen::VectorXd source_openness, target_openness;  ///< #V, see geometry/openness.h
+};
+
+/// Non-rigid registration by a bi-Laplacian prior on the displacement from the spline's start, its stiffness falling
+/// over eleven stages; closest points both ways with gates on normal, distance, border and openness; point-to-plane
+/// with a tenth of tangential pull; landmarks as priors that fade.
+///   source_landmarks, target_landmarks  #L x 3, pairs by row, on or near the surfaces
+///   throws  invalid_input: what ThinPlateSpline and fit_similarity refuse; surfaces without triangles
+///   cost    about 1.5 s for 14,000 vertices on either side, one core
+/// Invariant under similarity of either side, within rounding.
+Registration register_surfaces(const Surface& source, const Surface& target, const PointsD& source_landmarks,
+                               const PointsD& target_landmarks, const RegistrationOptions& options = {});
+
+}  // namespace mien
