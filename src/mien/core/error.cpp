@@ -23,7 +23,7 @@ Error::Error(Kind kind, const std::string& text, bool has_file)
 
 Error Error::in_file(std::string_view file) const {
   if (has_file_) return *this;
-  return Error(kind_, std::string(file) + ": " + what(), true);
+  return Error(kind_, one_line(file, what(), {}), true);
 }
 
 Error invalid_input(std::string_view place, std::string_view problem, std::string_view remedy) {
