@@ -1,0 +1,103 @@
+#include "mien/picture/detail/looks.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cmath>
+#include <optional>
+#include <string>
+
+namespace mien::detail {
+namespace {
+
+enum class Stuff { hidden, hair, skin, iris, eye, teeth, gum };
+
+struct Token {
+  const char* text;
+  Stuff stuff;
+};
+
+/// Looked for in this order: "eyelash" is hair before "eye" is an eye.
+constexpr std::array<Token, 22> tokens{
+    {{"occlusion", Stuff::hidden}, {"lacrimal", Stuff::hidden}, {"tearline", Stuff::hidden},
+     {"eyeblend", Stuff::hidden},  {"cornea", Stuff::hidden},   {"lash", Stuff::hair},
+     {"eyebrow", Stuff::hair},     {"hair", Stuff::hair},       {"eyelid", Stuff::skin},
+     {"socket", Stuff::skin},      {"iris", Stuff::iris},       {"pupil", Stuff::iris},
+     {"sclera", Stuff::eye},       {"eye", Stuff::eye},         {"teeth", Stuff::teeth},
+     {"tooth", Stuff::teeth},      {"gum", Stuff::gum},         {"tongue", Stuff::gum},
+     {"cavity", Stuff::gum},       {"skin", Stuff::skin},       {"face", Stuff::skin},
+     {"head", Stuff::skin}}};
+
+std::optional<Stuff> stuff_of_name(std::string name) {
+  std::transform(name.begin(), name.end(), name.begin(), [](unsigned char c) { return std::tolower(c); });
+  for (const Token& token : tokens)
+    if (name.find(token.text) != std::string::npos) return token.stuff;
+  return std::nullopt;
+}
+
+Look look_of(Stuff stuff) {
+  switch (stuff) {
+    case Stuff::hidden:
+      return {.visible = false};
+    case Stuff::hair:
+      return {.albedo = {0.035f, 0.025f, 0.02f}, .gloss = 0, .thin = true};
+    case Stuff::iris:
+      return {.albedo = {0.05f, 0.035f, 0.025f}, .gloss = 0.5f, .sharpness = 250};
+    case Stuff::eye:
+      return {.albedo = {0.74f, 0.72f, 0.70f}, .gloss = 0.45f, .sharpness = 250};
+    case Stuff::teeth:
+      return {.albedo = {0.72f, 0.66f, 0.55f}, .gloss = 0.2f, .sharpness = 60};
+    case Stuff::gum:
+      return {.albedo = {0.45f, 0.12f, 0.11f}, .gloss = 0.15f, .sharpness = 40};
+    case Stuff::skin:
+      break;
+  }
+  return {};
+}
+
+/// A colour that says nothing: the default grey, or white under a texture that is not drawn.
+bool says_nothing(const Eigen::Vector4f& color) {
+  const float spread = color.head<3>().maxCoeff() - color.head<3>().minCoeff();
+  return spread < 1e-4f && color[0] > 0.4f;
+}
+
+Look look_of_group(const Character& character, const Part& part, const FaceGroup& group) {
+  const auto& materials = character.appearance.materials;
+  const bool has_material = group.material >= 0 && group.material < static_cast<int>(materials.size());
+  const std::string material = has_material ? materials[group.material].name : std::string();
+  Look look;
+  for (const std::string& name : {material, group.name, part.name, part.mesh_name})
+    if (const auto stuff = stuff_of_name(name)) {
+      look = look_of(*stuff);
+      break;
+    }
+  if (has_material && look.visible) {
+    const Eigen::Vector4f& color = materials[group.material].base_color;
+    if (color[3] < 0.1f) look.visible = false;
+    if (!says_nothing(color) && color.allFinite()) look.albedo = color.head<3>().cwiseMax(0.f).cwiseMin(1.f);
+  }
+  return look;
+}
+
+float linear(float s) {
+  return s <= 0.04045f ? s / 12.92f : std::pow((s + 0.055f) / 1.055f, 2.4f);
+}
+
+}  // namespace
+
+std::vector<Look> looks_of_part(const Character& character, const Part& part) {
+  const Look whole = look_of_group(character, part, {});
+  std::vector<Look> looks(part.mesh.faces.size(), whole);
+  for (const FaceGroup& group : part.mesh.groups) {
+    const Look look = look_of_group(character, part, group);
+    const int end = std::min(group.face_end, static_cast<int>(looks.size()));
+    for (int f = std::max(group.face_begin, 0); f < end; ++f) looks[f] = look;
+  }
+  return looks;
+}
+
+Eigen::Vector3f linear_of(Color color) {
+  return {linear(color.r), linear(color.g), linear(color.b)};
+}
+
+}  // namespace mien::detail

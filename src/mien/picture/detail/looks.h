@@ -1,0 +1,25 @@
+#pragma once
+/// What a run of faces is made of, as far as a picture needs it.
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "mien/character/character.h"
+#include "mien/picture/picture.h"
+
+namespace mien::detail {
+
+struct Look {
+  Eigen::Vector3f albedo = Eigen::Vector3f(0.56f, 0.36f, 0.27f);  ///< linear RGB
+  float gloss = 0.06f;                                            ///< strength of the highlight
+  float sharpness = 18;                                           ///< its exponent
+  bool visible = true;
+  bool thin = false;  ///< both sides are outside (lashes)
+};
+
+/// One look a face of the part.
+std::vector<Look> looks_of_part(const Character& character, const Part& part);
+
+Eigen::Vector3f linear_of(Color color);
+
+}  // namespace mien::detail

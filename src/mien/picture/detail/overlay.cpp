@@ -1,0 +1,108 @@
+#include "mien/picture/detail/overlay.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "mien/picture/detail/canvas.h"
+
+namespace mien::detail {
+namespace {
+
+constexpr float hidden_slack =
+    0.004f;  // scene units: a point this far under the surface still counts as on it
+
+Eigen::Vector3f in_scene(const RayScene& scene, const Eigen::Vector3d& position) {
+  return ((position - scene.centre) / scene.size).cast<float>();
+}
+
+bool visible(const RayScene& scene, const Lens& lens, const Eigen::Vector3f& point) {
+  const Eigen::Vector3f way = point - lens.eye;
+  const float distance = way.norm();
+  if (!(way.dot(lens.back) < 0) || !std::isfinite(distance)) return false;
+  RTCRay ray{};
+  ray.org_x = lens.eye.x();
+  ray.org_y = lens.eye.y();
+  ray.org_z = lens.eye.z();
+  ray.dir_x = way.x() / distance;
+  ray.dir_y = way.y() / distance;
+  ray.dir_z = way.z() / distance;
+  ray.tfar = distance - hidden_slack;
+  ray.mask = ~0u;
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  rtcOccluded1(scene.embree(), &context, &ray);
+  return ray.tfar >= 0;
+}
+
+void draw_line(const RayScene& scene, const Lens& lens, const Polyline& line, Canvas& canvas) {
+  const double width = std::max(1.2, lens.height / 350.0);
+  std::vector<Eigen::Vector2d> run;
+  const auto flush = [&] {
+    canvas.line(run, width, line.color);
+    run.clear();
+  };
+  for (std::size_t i = 0; i + 1 < line.points.size(); ++i) {
+    const Eigen::Vector3f a = in_scene(scene, line.points[i]), b = in_scene(scene, line.points[i + 1]);
+    const float pixels = (lens.project(a) - lens.project(b)).head<2>().norm();
+    const int steps = std::isfinite(pixels) ? std::clamp(static_cast<int>(pixels / 2), 1, 4096) : 1;
+    for (int k = i == 0 ? 0 : 1; k <= steps; ++k) {
+      const Eigen::Vector3f p = a + (b - a) * (static_cast<float>(k) / static_cast<float>(steps));
+      if (visible(scene, lens, p))
+        run.push_back(lens.project(p).head<2>().cast<double>());
+      else
+        flush();
+    }
+  }
+  flush();
+}
+
+void draw_marker(const RayScene& scene, const Lens& lens, const Marker& marker, Canvas& canvas) {
+  const Eigen::Vector3f point = in_scene(scene, marker.position);
+  if (!visible(scene, lens, point)) return;
+  const Eigen::Vector2d at = lens.project(point).head<2>().cast<double>();
+  const double radius = std::max(2.0, lens.height / 220.0);
+  canvas.dot(at, radius, marker.color);
+  if (marker.label.empty()) return;
+  const TextStyle style{.size = std::max(8.0, lens.height / 60.0)};
+  canvas.text_on_picture(marker.label, at + Eigen::Vector2d(1.6 * radius, -0.8 * radius), style);
+}
+
+std::string number(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g", value);
+  return text;
+}
+
+void draw_legend(const VertexMap& map, const Picture& picture, Canvas& canvas) {
+  const double text = std::clamp(picture.height / 40.0, 8.0, 16.0);
+  const double width = picture.width * 0.5, height = text * 0.8;
+  const double left = text, top = picture.height - 2.6 * text;
+  const int steps = std::max(2, static_cast<int>(width));
+  for (int k = 0; k < steps; ++k)
+    canvas.fill(left + width * k / steps, top, width / steps + 0.6, height,
+                map_color(map.colors, static_cast<double>(k) / (steps - 1)));
+  canvas.outline(left, top, width, height, {0.4f, 0.4f, 0.4f});
+  const TextStyle style{.size = text * 0.9, .align = Align::centre};
+  for (int k = 0; k <= 2; ++k) {
+    TextStyle at = style;
+    at.align = k == 0 ? Align::left : k == 1 ? Align::centre : Align::right;
+    canvas.text_on_picture(number(map.low + (map.high - map.low) * k / 2),
+                           {left + width * k / 2, top + height + text}, at);
+  }
+  if (!map.title.empty()) canvas.text_on_picture(map.title, {left, top - 0.4 * text}, {.size = text * 0.95});
+}
+
+}  // namespace
+
+void draw_overlay(const RayScene& scene, const Lens& lens, const RenderOptions& options, Picture& picture) {
+  const bool legend = options.map && options.map->legend;
+  if (options.markers.empty() && options.polylines.empty() && !legend) return;
+  Canvas canvas(picture);
+  for (const Polyline& line : options.polylines) draw_line(scene, lens, line, canvas);
+  for (const Marker& marker : options.markers) draw_marker(scene, lens, marker, canvas);
+  if (legend) draw_legend(*options.map, picture, canvas);
+  canvas.finish();
+}
+
+}  // namespace mien::detail

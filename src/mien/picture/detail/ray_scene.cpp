@@ -1,0 +1,139 @@
+#include "mien/picture/detail/ray_scene.h"
+
+#include <limits>
+#include <map>
+#include <string>
+#include <tuple>
+
+#include "mien/character/weld.h"
+#include "mien/core/error.h"
+
+namespace mien::detail {
+namespace {
+
+std::uint16_t index_of(const Look& look, std::vector<Look>& looks) {
+  for (std::size_t i = 0; i < looks.size(); ++i) {
+    const Look& known = looks[i];
+    if (known.albedo == look.albedo && known.gloss == look.gloss && known.sharpness == look.sharpness &&
+        known.visible == look.visible && known.thin == look.thin)
+      return static_cast<std::uint16_t>(i);
+  }
+  if (looks.size() >= std::numeric_limits<std::uint16_t>::max()) return 0;
+  looks.push_back(look);
+  return static_cast<std::uint16_t>(looks.size() - 1);
+}
+
+/// Sides of fan triangle `c` (corners 0, c - 1, c) that are edges of the polygon and not its diagonals.
+std::uint8_t polygon_sides(std::size_t c, std::size_t corners) {
+  return static_cast<std::uint8_t>(1 | (c + 1 == corners ? 2 : 0) | (c == 2 ? 4 : 0));
+}
+
+void check_face(std::span<const int> face, const Part& part) {
+  for (const int v : face)
+    if (v < 0 || static_cast<std::size_t>(v) >= part.mesh.vertex_count())
+      throw invalid_input(
+          "part " + part.name, "has a face that names vertex " + std::to_string(v),
+          "vertices from 0 to " + std::to_string(static_cast<int>(part.mesh.vertex_count()) - 1));
+}
+
+SoupPart make_part(const Character& character, int p, std::vector<Look>& looks) {
+  const Part& part = character.parts[p];
+  const Faces& faces = part.mesh.faces;
+  const Weld weld = weld_seams(character, p);
+  const std::vector<Look> look_of_face = looks_of_part(character, part);
+  SoupPart made{weld.of, weld.representative, triangulate(weld_faces(faces, weld)), {}, {}, {}};
+  std::vector<Eigen::Vector3i> drawn;
+  for (std::size_t f = 0; f < faces.size(); ++f) {
+    const auto face = faces[f];
+    check_face(face, part);
+    if (!look_of_face[f].visible) continue;
+    for (std::size_t c = 2; c < face.size(); ++c) {
+      drawn.emplace_back(face[0], face[c - 1], face[c]);
+      made.looks.push_back(index_of(look_of_face[f], looks));
+      made.edges.push_back(polygon_sides(c, face.size()));
+    }
+  }
+  made.triangles.resize(static_cast<Eigen::Index>(drawn.size()), 3);
+  for (std::size_t t = 0; t < drawn.size(); ++t) made.triangles.row(static_cast<Eigen::Index>(t)) = drawn[t];
+  return made;
+}
+
+/// Smooth over seams: the copies of a vertex share one normal.
+Points smooth_normals(const SoupPart& part, const Points& posed) {
+  Points welded(static_cast<Eigen::Index>(part.first.size()), 3);
+  for (std::size_t w = 0; w < part.first.size(); ++w)
+    welded.row(static_cast<Eigen::Index>(w)) = posed.row(part.first[w]);
+  const Points normals = vertex_normals(welded, part.welded_triangles);
+  return normals(part.welded, Eigen::all);
+}
+
+}  // namespace
+
+Soup make_soup(const Character& character) {
+  Soup soup;
+  for (std::size_t p = 0; p < character.parts.size(); ++p)
+    soup.parts.push_back(make_part(character, static_cast<int>(p), soup.looks));
+  return soup;
+}
+
+RayScene::RayScene(const Soup& soup, const std::vector<Points>& posed, const VertexMap* map) {
+  Eigen::Vector3d low = Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity()), high = -low;
+  for (std::size_t p = 0; p < posed.size(); ++p) {
+    if (soup.parts[p].triangles.rows() == 0) continue;
+    const Box box = bounding_box(posed[p]);
+    low = low.cwiseMin(box.low);
+    high = high.cwiseMax(box.high);
+  }
+  if (!(low.x() <= high.x())) throw invalid_input("picture", "shows no faces", "a part with visible faces");
+  centre = (low + high) / 2;
+  size = std::max((high - low).norm(), 1e-30);
+  for (std::size_t p = 0; p < posed.size(); ++p) {
+    const bool has_map = map && p < map->values.size() && map->values[p].size() > 0;
+    add_part(soup.parts[p], posed[p], has_map ? &map->values[p] : nullptr);
+  }
+  build();
+}
+
+RayScene::~RayScene() {
+  if (scene_) rtcReleaseScene(scene_);
+  if (device_) rtcReleaseDevice(device_);
+}
+
+void RayScene::add_part(const SoupPart& part, const Points& posed, const Eigen::VectorXf* part_values) {
+  const int base = static_cast<int>(positions.size());
+  const Points part_normals = smooth_normals(part, posed);
+  for (Eigen::Index v = 0; v < posed.rows(); ++v) {
+    positions.emplace_back(((posed.row(v).cast<double>().transpose() - centre) / size).cast<float>());
+    normals.emplace_back(part_normals.row(v));
+    values.push_back(part_values ? (*part_values)[v] : 0.f);
+  }
+  const Eigen::Index before = triangles.rows();
+  triangles.conservativeResize(before + part.triangles.rows(), 3);
+  triangles.bottomRows(part.triangles.rows()) = part.triangles.array() + base;
+  looks.insert(looks.end(), part.looks.begin(), part.looks.end());
+  edges.insert(edges.end(), part.edges.begin(), part.edges.end());
+  mapped.insert(mapped.end(), static_cast<std::size_t>(part.triangles.rows()), part_values != nullptr);
+}
+
+void RayScene::build() {
+  device_ = rtcNewDevice(nullptr);
+  scene_ = rtcNewScene(device_);
+  rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_ROBUST);
+  RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
+  auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(
+      geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), positions.size()));
+  auto* indices = static_cast<unsigned*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0,
+                                                                 RTC_FORMAT_UINT3, 3 * sizeof(unsigned),
+                                                                 static_cast<std::size_t>(triangles.rows())));
+  if (!vertices || !indices) throw invalid_input("picture", "has too many faces to fit into memory");
+  for (std::size_t v = 0; v < positions.size(); ++v)
+    for (int k = 0; k < 3; ++k) vertices[3 * v + k] = positions[v][k];
+  for (Eigen::Index t = 0; t < triangles.rows(); ++t)
+    for (int k = 0; k < 3; ++k) indices[3 * t + k] = static_cast<unsigned>(triangles(t, k));
+  rtcCommitGeometry(geometry);
+  rtcAttachGeometry(scene_, geometry);
+  rtcReleaseGeometry(geometry);
+  rtcCommitScene(scene_);
+}
+
+}  // namespace mien::detail

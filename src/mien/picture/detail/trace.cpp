@@ -1,0 +1,327 @@
+// Three passes over the pixels.
+//   1. 16 primary rays a pixel; a shadow ray to a point of the key light and a ray to a point of the sky from
+//   each hit.
+//      All 16 go to Embree as one packet: three packets a pixel.
+//   2. Key visibility and sky visibility are averaged over 4 x 4 pixels along the surface (depth and normal
+//   agree). Each
+//      of the 16 pixels of such a block has its own cell of the 256 strata, so that the average has 256 even
+//      samples: smooth at a sixteenth of the rays, and, without any random number, the same at any thread
+//      count.
+//   3. Colour: base x (key + fill + sky), light bounced in cavities by the base colour, then the display's
+//   curve.
+// Shadow and sky rays start from the smooth surface that the normals promise, not from the flat triangle:
+// without that, coarse meshes show their triangles along the terminator (Hanika 2021, Hacking the Shadow
+// Terminator).
+#include "mien/picture/detail/trace.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "mien/core/parallel.h"
+
+namespace mien::detail {
+namespace {
+
+using Vec = Eigen::Vector3f;
+
+constexpr int samples = 16;
+constexpr float key_radius = 0.16f;  // of the light's disc at distance one: penumbrae as of a softbox
+constexpr float offset = 2e-5f;      // rays start this far off the surface; scene units
+const Vec key_color(1.02f, 0.98f, 0.92f), sky_color(0.60f, 0.63f, 0.68f), fill_color(0.13f, 0.13f, 0.14f);
+
+/// What a pixel gathers in the first pass.
+struct Gathered {
+  Vec key = Vec::Zero();   // light of the key if nothing were in its way
+  Vec fill = Vec::Zero();  // light of the fill
+  Vec base = Vec::Zero();  // base colour
+  Vec normal = Vec::Zero(), position = Vec::Zero();
+  float coverage = 0, key_visible = 0, sky_visible = 0;
+};
+
+struct Hit {
+  Vec position, normal, base;  // shading normal, towards the eye
+  Vec start;                   // where secondary rays leave from
+  float gloss = 0, sharpness = 1;
+};
+
+struct Lights {
+  Vec key, key_x, key_y, fill, up;
+};
+
+/// The lights stand around the camera: every view is lit alike.
+Lights make_lights(const Lens& lens) {
+  Lights lights;
+  lights.key = (-0.48f * lens.right + 0.62f * lens.up + 0.62f * lens.back).normalized();
+  lights.key_x = lights.key.cross(lens.up).normalized();
+  lights.key_y = lights.key.cross(lights.key_x);
+  lights.fill = (0.75f * lens.right + 0.05f * lens.up + 0.65f * lens.back).normalized();
+  lights.up = lens.up;
+  return lights;
+}
+
+/// Point `s` of the 16 strata of a pixel, in cell `cell` of 16 finer strata; [0, 1)^2.
+Eigen::Vector2f stratum(int s, int cell) {
+  return {(static_cast<float>(s % 4) + (static_cast<float>(cell % 4) + 0.5f) / 4) / 4,
+          (static_cast<float>(s / 4) + (static_cast<float>(cell / 4) + 0.5f) / 4) / 4};
+}
+
+/// The cells of a 4 x 4 block of pixels, neighbours far apart.
+int cell_of(int x, int y) {
+  static constexpr std::array<int, 16> bayer{0, 8, 2, 10, 12, 4, 14, 6, 3, 11, 1, 9, 15, 7, 13, 5};
+  return bayer[(y & 3) * 4 + (x & 3)];
+}
+
+class Tracer {
+ public:
+  Tracer(const RayScene& scene, const std::vector<Look>& looks, const Lens& lens, const TraceOptions& options)
+      : scene_(scene), looks_(looks), lens_(lens), options_(options), lights_(make_lights(lens)) {}
+
+  Gathered gather(int x, int y) const;
+
+ private:
+  bool surface(const RTCRayHit16& rays, int s, Hit& hit) const;
+  Vec base_color(const Look& look, int triangle, const Vec& corners) const;
+  bool on_edge(int triangle, const Vec& corners, float depth) const;
+  void shade(const std::array<Hit, samples>& hits, const std::array<int, samples>& valid, int cell,
+             Gathered& gathered) const;
+
+  const RayScene& scene_;
+  const std::vector<Look>& looks_;
+  const Lens& lens_;
+  const TraceOptions& options_;
+  Lights lights_;
+};
+
+Vec Tracer::base_color(const Look& look, int triangle, const Vec& corners) const {
+  if (!scene_.mapped[triangle]) return look.albedo;
+  const auto t = scene_.triangles.row(triangle);
+  const float value =
+      corners[0] * scene_.values[t[0]] + corners[1] * scene_.values[t[1]] + corners[2] * scene_.values[t[2]];
+  const VertexMap& map = *options_.map;
+  const double span = map.high - map.low;
+  return linear_of(map_color(map.colors, span != 0 ? (value - map.low) / span : 0));
+}
+
+/// Whether the point is within half a pixel of a polygon's edge.
+bool Tracer::on_edge(int triangle, const Vec& corners, float depth) const {
+  const auto t = scene_.triangles.row(triangle);
+  const Vec &a = scene_.positions[t[0]], &b = scene_.positions[t[1]], &c = scene_.positions[t[2]];
+  const float twice_area = (b - a).cross(c - a).norm();
+  const std::array<float, 3> sides{(c - b).norm(), (a - c).norm(), (b - a).norm()};
+  for (int k = 0; k < 3; ++k)
+    if ((scene_.edges[triangle] >> k & 1) && corners[k] * twice_area < 0.55f * lens_.pixel(depth) * sides[k])
+      return true;
+  return false;
+}
+
+bool Tracer::surface(const RTCRayHit16& rays, int s, Hit& hit) const {
+  if (rays.hit.geomID[s] == RTC_INVALID_GEOMETRY_ID) return false;
+  const int triangle = static_cast<int>(rays.hit.primID[s]);
+  const Vec corners(1 - rays.hit.u[s] - rays.hit.v[s], rays.hit.u[s], rays.hit.v[s]);
+  const Vec to_eye = -Vec(rays.ray.dir_x[s], rays.ray.dir_y[s], rays.ray.dir_z[s]);
+  const Vec flat(rays.hit.Ng_x[s], rays.hit.Ng_y[s], rays.hit.Ng_z[s]);
+  const float side = flat.dot(to_eye) < 0 ? -1.f : 1.f;
+  const auto t = scene_.triangles.row(triangle);
+  hit.position = hit.normal = Vec::Zero();
+  for (int k = 0; k < 3; ++k) {
+    hit.position += corners[k] * scene_.positions[t[k]];
+    hit.normal += corners[k] * side * scene_.normals[t[k]];
+  }
+  if (hit.normal.squaredNorm() < 1e-12f) hit.normal = side * flat;
+  hit.normal.normalize();
+  // At silhouettes smooth normals may turn away from the eye: bend them back to grazing.
+  const float facing = hit.normal.dot(to_eye);
+  if (facing < 0.02f) hit.normal = (hit.normal + (0.02f - facing) * to_eye).normalized();
+  Vec lifted = hit.position;
+  for (int k = 0; k < 3; ++k) {
+    const Vec normal = side * scene_.normals[t[k]];
+    lifted -= corners[k] * std::min(0.f, (hit.position - scene_.positions[t[k]]).dot(normal)) * normal;
+  }
+  hit.start = lifted + offset * side * flat.normalized();
+  const Look& look = looks_[scene_.looks[triangle]];
+  hit.base = base_color(look, triangle, corners);
+  hit.gloss = scene_.mapped[triangle] ? 0 : look.gloss;
+  hit.sharpness = look.sharpness;
+  // The back of a closed skin is the inside of a head: seen only through a hole, it stays in the dark.
+  if (side < 0 && !look.thin) hit.base *= 0.35f, hit.gloss = 0;
+  if (options_.wireframe && on_edge(triangle, corners, lens_.project(hit.position).z()))
+    hit.base *= 0.18f, hit.gloss = 0;
+  return true;
+}
+
+void set_ray(RTCRay16& rays, int s, const Vec& from, const Vec& direction) {
+  rays.org_x[s] = from.x();
+  rays.org_y[s] = from.y();
+  rays.org_z[s] = from.z();
+  rays.dir_x[s] = direction.x();
+  rays.dir_y[s] = direction.y();
+  rays.dir_z[s] = direction.z();
+  rays.tnear[s] = 0;
+  rays.tfar[s] = std::numeric_limits<float>::infinity();
+  rays.mask[s] = ~0u;
+  rays.time[s] = 0;
+  rays.id[s] = 0;
+  rays.flags[s] = 0;
+}
+
+/// Cosine-weighted direction around `normal`.
+Vec sky_direction(const Vec& normal, const Eigen::Vector2f& u) {
+  const float angle = 2 * std::numbers::pi_v<float> * u.x(), r = std::sqrt(u.y());
+  const float sign = std::copysign(1.f, normal.z()), a = -1 / (sign + normal.z()),
+              b = normal.x() * normal.y() * a;
+  const Vec x(1 + sign * normal.x() * normal.x() * a, sign * b, -sign * normal.x());
+  const Vec y(b, sign + normal.y() * normal.y() * a, -normal.y());
+  return r * std::cos(angle) * x + r * std::sin(angle) * y + std::sqrt(std::max(0.f, 1 - u.y())) * normal;
+}
+
+void Tracer::shade(const std::array<Hit, samples>& hits, const std::array<int, samples>& valid, int cell,
+                   Gathered& gathered) const {
+  alignas(64) RTCRay16 key, sky;
+  std::array<float, samples> sky_light{};
+  for (int s = 0; s < samples; ++s) {
+    const Hit& hit = hits[s];
+    const Eigen::Vector2f u = stratum((s * 5 + 3) % samples, cell),
+                          w = stratum((s * 11 + 7) % samples, (cell * 7 + 5) % 16);
+    const float r = key_radius * std::sqrt(u.x()), angle = 2 * std::numbers::pi_v<float> * u.y();
+    const Vec to_key =
+        lights_.key + r * std::cos(angle) * lights_.key_x + r * std::sin(angle) * lights_.key_y;
+    const Vec to_sky = valid[s] ? sky_direction(hit.normal, w) : Vec(0, 0, 1);
+    set_ray(key, s, valid[s] ? hit.start : Vec(0, 0, 0), to_key.normalized());
+    set_ray(sky, s, valid[s] ? hit.start : Vec(0, 0, 0), to_sky);
+    sky_light[s] = 0.68f + 0.32f * to_sky.dot(lights_.up);
+  }
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  rtcOccluded16(valid.data(), scene_.embree(), &context, &sky);
+  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  rtcOccluded16(valid.data(), scene_.embree(), &context, &key);
+  for (int s = 0; s < samples; ++s) {
+    if (!valid[s]) continue;
+    const Hit& hit = hits[s];
+    const float cosine = std::max(0.f, hit.normal.dot(lights_.key));
+    const Vec half = (lights_.key + (lens_.eye - hit.position).normalized()).normalized();
+    const float shine =
+        hit.gloss * std::pow(std::max(0.f, hit.normal.dot(half)), hit.sharpness) * (cosine > 0 ? 1.f : 0.f);
+    gathered.key += key_color.cwiseProduct(hit.base * cosine + Vec::Constant(shine));
+    gathered.fill += fill_color.cwiseProduct(hit.base) * std::max(0.f, hit.normal.dot(lights_.fill));
+    gathered.base += hit.base;
+    gathered.normal += hit.normal;
+    gathered.position += hit.position;
+    gathered.coverage += 1;
+    gathered.key_visible += key.tfar[s] >= 0 ? 1.f : 0.f;
+    gathered.sky_visible += sky.tfar[s] >= 0 ? sky_light[s] : 0.f;
+  }
+}
+
+Gathered Tracer::gather(int x, int y) const {
+  alignas(64) RTCRayHit16 rays;
+  alignas(64) std::array<int, samples> valid;
+  valid.fill(-1);
+  for (int s = 0; s < samples; ++s) {
+    // A 4 x 4 grid turned a little, so that upright and level edges get sixteen steps.
+    const float dx = (static_cast<float>(s % 4) + (static_cast<float>(s / 4) + 0.5f) / 4) / 4;
+    const float dy = (static_cast<float>(s / 4) + (static_cast<float>(s % 4) + 0.5f) / 4) / 4;
+    set_ray(rays.ray, s, lens_.eye, lens_.ray(static_cast<float>(x) + dx, static_cast<float>(y) + dy));
+    rays.hit.geomID[s] = RTC_INVALID_GEOMETRY_ID;
+  }
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  rtcIntersect16(valid.data(), scene_.embree(), &context, &rays);
+  std::array<Hit, samples> hits;
+  bool any = false;
+  for (int s = 0; s < samples; ++s) {
+    valid[s] = surface(rays, s, hits[s]) ? -1 : 0;
+    any = any || valid[s];
+  }
+  Gathered gathered;
+  if (!any) return gathered;
+  shade(hits, valid, cell_of(x, y), gathered);
+  const float count = gathered.coverage;
+  gathered.normal.normalize();
+  gathered.position /= count;
+  gathered.key_visible /= count;
+  gathered.sky_visible /= count;
+  return gathered;
+}
+
+/// Visibility averaged over the neighbours that lie on the same surface.
+Eigen::Vector2f filtered(const std::vector<Gathered>& pixels, const Lens& lens, int x, int y) {
+  const Gathered& here = pixels[static_cast<std::size_t>(y) * lens.width + x];
+  const float reach = 1.5f * lens.pixel((here.position - lens.eye).norm());
+  Eigen::Vector2f sum = Eigen::Vector2f::Zero();
+  float total = 0;
+  for (int dy = -2; dy <= 2; ++dy)
+    for (int dx = -2; dx <= 2; ++dx) {
+      const int nx = x + dx, ny = y + dy;
+      if (nx < 0 || ny < 0 || nx >= lens.width || ny >= lens.height) continue;
+      const Gathered& there = pixels[static_cast<std::size_t>(ny) * lens.width + nx];
+      if (there.coverage == 0) continue;
+      const float off = std::abs((there.position - here.position).dot(here.normal)) / reach;
+      const float turn = std::max(0.f, here.normal.dot(there.normal));
+      // Half weight on the rim: every stratum of the block counts the same.
+      const float rim = (std::abs(dx) == 2 ? 0.5f : 1.f) * (std::abs(dy) == 2 ? 0.5f : 1.f);
+      const float weight =
+          rim * std::exp(-off * off) * std::pow(turn, 12.f) + (dx == 0 && dy == 0 ? 1e-6f : 0.f);
+      sum += weight * Eigen::Vector2f(there.key_visible, there.sky_visible);
+      total += weight;
+    }
+  return sum / total;
+}
+
+/// Sky light in a cavity is also reflected by its walls, in their colour (Jimenez et al. 2016, Practical
+/// Real-Time Strategies for Accurate Indirect Occlusion).
+Vec with_bounces(float visible, const Vec& base) {
+  const auto one = [&](float a) {
+    const float p = 2.0404f * a - 0.3324f, q = -4.7951f * a + 0.6417f, r = 2.7552f * a + 0.6903f;
+    return std::max(visible, ((visible * p + q) * visible + r) * visible);
+  };
+  return {one(base.x()), one(base.y()), one(base.z())};
+}
+
+float display(float linear) {
+  // Straight up to 0.7, then a shoulder that never quite reaches white.
+  const float x = linear <= 0.7f ? linear : 0.7f + 0.3f * (1 - std::exp(-(linear - 0.7f) / 0.3f));
+  return x <= 0.0031308f ? 12.92f * x : 1.055f * std::pow(x, 1 / 2.4f) - 0.055f;
+}
+
+Vec pixel_color(const Gathered& gathered, const Eigen::Vector2f& visible) {
+  const Vec sky = with_bounces(visible.y(), gathered.base / gathered.coverage);
+  return (gathered.key * visible.x() + gathered.fill * visible.y() +
+          gathered.base.cwiseProduct(sky_color.cwiseProduct(sky))) /
+         gathered.coverage;
+}
+
+}  // namespace
+
+Picture trace(const RayScene& scene, const std::vector<Look>& looks, const Lens& lens,
+              const TraceOptions& options) {
+  Picture picture = blank_picture(lens.width, lens.height, options.background);
+  const Tracer tracer(scene, looks, lens, options);
+  std::vector<Gathered> pixels(static_cast<std::size_t>(lens.width) * lens.height);
+  parallel_for(lens.height, 4, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t y = begin; y < end; ++y)
+      for (int x = 0; x < lens.width; ++x) pixels[y * lens.width + x] = tracer.gather(x, static_cast<int>(y));
+  });
+  const std::array<float, 3> ground{options.background.r, options.background.g, options.background.b};
+  parallel_for(lens.height, 4, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t y = begin; y < end; ++y)
+      for (int x = 0; x < lens.width; ++x) {
+        const Gathered& gathered = pixels[y * lens.width + x];
+        if (gathered.coverage == 0) continue;
+        const Vec color = pixel_color(gathered, filtered(pixels, lens, x, static_cast<int>(y)));
+        const float share = gathered.coverage / samples;
+        for (int k = 0; k < 3; ++k) {
+          const float value = share * display(color[k]) + (1 - share) * ground[k];
+          picture.rgba[4 * (y * lens.width + x) + k] =
+              static_cast<std::uint8_t>(std::lround(255 * std::clamp(value, 0.f, 1.f)));
+        }
+      }
+  });
+  return picture;
+}
+
+}  // namespace mien::detail
