@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <mutex>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -31,6 +32,19 @@ TEST(parallel_for, what_a_body_throws_arrives) {
                               if (begin == 42) throw invalid_input("index 42", "is the wrong answer");
                             }),
                Error);
+}
+
+TEST(parallel_for, of_several_failures_the_lowest_arrives) {
+  for (int attempt = 0; attempt < 20; ++attempt) {
+    try {
+      parallel_for(100, 1, [](std::size_t begin, std::size_t) {
+        if (begin % 7 == 3) throw invalid_input("index " + std::to_string(begin), "fails");
+      });
+      FAIL() << "nothing was thrown";
+    } catch (const Error& error) {
+      EXPECT_STREQ(error.what(), "index 3: fails");
+    }
+  }
 }
 
 TEST(parallel_for, nothing_to_do_calls_nothing) {

@@ -10,7 +10,8 @@ namespace mien {
 /// the same time: a body writes only to slots of its own range. Sums over all indices are the caller's to do
 /// in index order afterwards, so that the same input gives the same bytes at any thread count.
 ///   grain   the most indices in one range; the ranges depend on `count` and `grain` alone
-///   throws  whatever a body throws
+///   throws  what a body throws, after all ranges have run: of several failures the one of the lowest range,
+///           so that the same input fails with the same words
 void parallel_for(std::size_t count, std::size_t grain,
                   const std::function<void(std::size_t begin, std::size_t end)>& body);
 
