@@ -11,8 +11,8 @@ namespace mien::detail {
 
 struct Look {
   Eigen::Vector3f albedo = Eigen::Vector3f(0.56f, 0.36f, 0.27f);  ///< linear RGB
-  float gloss = 0.06f;                                            ///< strength of the highlight
-  float sharpness = 18;                                           ///< its exponent
+  float gloss = 0.10f;                                            ///< strength of the highlight
+  float sharpness = 14;                                           ///< its exponent
   bool visible = true;
   bool thin = false;  ///< both sides are outside (lashes)
 };

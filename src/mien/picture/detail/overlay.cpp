@@ -31,7 +31,7 @@ bool visible(const RayScene& scene, const Lens& lens, const Eigen::Vector3f& poi
   ray.mask = ~0u;
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
-  rtcOccluded1(scene.embree(), &context, &ray);
+  rtcOccluded1(scene.solid(), &context, &ray);
   return ray.tfar >= 0;
 }
 

@@ -1,9 +1,8 @@
 #include "mien/picture/detail/ray_scene.h"
 
 #include <limits>
-#include <map>
 #include <string>
-#include <tuple>
+#include <vector>
 
 #include "mien/character/weld.h"
 #include "mien/core/error.h"
@@ -67,6 +66,10 @@ Points smooth_normals(const SoupPart& part, const Points& posed) {
   return normals(part.welded, Eigen::all);
 }
 
+bool has_values(const VertexMap* map, std::size_t part) {
+  return map && part < map->values.size() && map->values[part].size() > 0;
+}
+
 }  // namespace
 
 Soup make_soup(const Character& character) {
@@ -87,53 +90,75 @@ RayScene::RayScene(const Soup& soup, const std::vector<Points>& posed, const Ver
   if (!(low.x() <= high.x())) throw invalid_input("picture", "shows no faces", "a part with visible faces");
   centre = (low + high) / 2;
   size = std::max((high - low).norm(), 1e-30);
-  for (std::size_t p = 0; p < posed.size(); ++p) {
-    const bool has_map = map && p < map->values.size() && map->values[p].size() > 0;
-    add_part(soup.parts[p], posed[p], has_map ? &map->values[p] : nullptr);
-  }
+  for (std::size_t p = 0; p < posed.size(); ++p)
+    add_vertices(soup.parts[p], posed[p], has_values(map, p) ? &map->values[p] : nullptr);
+  add_triangles(soup, map, false);
+  solid_count_ = static_cast<int>(triangles.size());
+  add_triangles(soup, map, true);
   build();
 }
 
 RayScene::~RayScene() {
-  if (scene_) rtcReleaseScene(scene_);
+  if (all_) rtcReleaseScene(all_);
+  if (solid_) rtcReleaseScene(solid_);
   if (device_) rtcReleaseDevice(device_);
 }
 
-void RayScene::add_part(const SoupPart& part, const Points& posed, const Eigen::VectorXf* part_values) {
-  const int base = static_cast<int>(positions.size());
+void RayScene::add_vertices(const SoupPart& part, const Points& posed, const Eigen::VectorXf* part_values) {
   const Points part_normals = smooth_normals(part, posed);
   for (Eigen::Index v = 0; v < posed.rows(); ++v) {
     positions.emplace_back(((posed.row(v).cast<double>().transpose() - centre) / size).cast<float>());
     normals.emplace_back(part_normals.row(v));
     values.push_back(part_values ? (*part_values)[v] : 0.f);
   }
-  const Eigen::Index before = triangles.rows();
-  triangles.conservativeResize(before + part.triangles.rows(), 3);
-  triangles.bottomRows(part.triangles.rows()) = part.triangles.array() + base;
-  looks.insert(looks.end(), part.looks.begin(), part.looks.end());
-  edges.insert(edges.end(), part.edges.begin(), part.edges.end());
-  mapped.insert(mapped.end(), static_cast<std::size_t>(part.triangles.rows()), part_values != nullptr);
+}
+
+void RayScene::add_triangles(const Soup& soup, const VertexMap* map, bool thin) {
+  int base = 0;
+  for (std::size_t p = 0; p < soup.parts.size(); ++p) {
+    const SoupPart& part = soup.parts[p];
+    for (std::size_t t = 0; t < part.looks.size(); ++t) {
+      if (soup.looks[part.looks[t]].thin != thin) continue;
+      triangles.emplace_back(part.triangles.row(static_cast<Eigen::Index>(t)).array() + base);
+      looks.push_back(part.looks[t]);
+      edges.push_back(part.edges[t]);
+      mapped.push_back(has_values(map, p));
+    }
+    base += static_cast<int>(part.welded.size());
+  }
+}
+
+RTCGeometry RayScene::make_geometry(std::size_t begin, std::size_t end) const {
+  RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
+  auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(
+      geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), positions.size()));
+  auto* indices = static_cast<unsigned*>(rtcSetNewGeometryBuffer(
+      geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(unsigned), end - begin));
+  if (!vertices || !indices) throw invalid_input("picture", "has too many faces to fit into memory");
+  for (std::size_t v = 0; v < positions.size(); ++v)
+    for (int k = 0; k < 3; ++k) vertices[3 * v + k] = positions[v][k];
+  for (std::size_t t = begin; t < end; ++t)
+    for (int k = 0; k < 3; ++k) indices[3 * (t - begin) + k] = static_cast<unsigned>(triangles[t][k]);
+  rtcCommitGeometry(geometry);
+  return geometry;
 }
 
 void RayScene::build() {
   device_ = rtcNewDevice(nullptr);
-  scene_ = rtcNewScene(device_);
-  rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_ROBUST);
-  RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
-  auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(
-      geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), positions.size()));
-  auto* indices = static_cast<unsigned*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0,
-                                                                 RTC_FORMAT_UINT3, 3 * sizeof(unsigned),
-                                                                 static_cast<std::size_t>(triangles.rows())));
-  if (!vertices || !indices) throw invalid_input("picture", "has too many faces to fit into memory");
-  for (std::size_t v = 0; v < positions.size(); ++v)
-    for (int k = 0; k < 3; ++k) vertices[3 * v + k] = positions[v][k];
-  for (Eigen::Index t = 0; t < triangles.rows(); ++t)
-    for (int k = 0; k < 3; ++k) indices[3 * t + k] = static_cast<unsigned>(triangles(t, k));
-  rtcCommitGeometry(geometry);
-  rtcAttachGeometry(scene_, geometry);
-  rtcReleaseGeometry(geometry);
-  rtcCommitScene(scene_);
+  all_ = rtcNewScene(device_);
+  solid_ = rtcNewScene(device_);
+  const auto solid_count = static_cast<std::size_t>(solid_count_);
+  RTCGeometry solid_geometry = make_geometry(0, solid_count);
+  RTCGeometry thin_geometry = make_geometry(solid_count, triangles.size());
+  rtcAttachGeometryByID(solid_, solid_geometry, 0);
+  rtcAttachGeometryByID(all_, solid_geometry, 0);
+  rtcAttachGeometryByID(all_, thin_geometry, 1);
+  rtcReleaseGeometry(solid_geometry);
+  rtcReleaseGeometry(thin_geometry);
+  for (RTCScene scene : {solid_, all_}) {
+    rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
+    rtcCommitScene(scene);
+  }
 }
 
 }  // namespace mien::detail

@@ -38,21 +38,30 @@ class RayScene {
   RayScene(const RayScene&) = delete;
   RayScene& operator=(const RayScene&) = delete;
 
-  RTCScene embree() const { return scene_; }
+  /// Everything; hits are numbered by `triangle_of`.
+  RTCScene all() const { return all_; }
+  /// Without thin things such as lashes, which cast no shadow.
+  RTCScene solid() const { return solid_; }
+  int triangle_of(unsigned geometry, unsigned primitive) const {
+    return static_cast<int>(primitive) + (geometry == 0 ? 0 : solid_count_);
+  }
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();  ///< of the box, model space
   double size = 1;                                   ///< diagonal of the box, model units
   std::vector<Eigen::Vector3f> positions, normals;
-  std::vector<float> values;  ///< per vertex, or empty
-  std::vector<char> mapped;   ///< per triangle: drawn by `values`
-  Triangles triangles;
+  std::vector<float> values;               ///< per vertex, or empty
+  std::vector<char> mapped;                ///< per triangle: drawn by `values`
+  std::vector<Eigen::Vector3i> triangles;  ///< the solid ones, then the thin ones
   std::vector<std::uint16_t> looks;
   std::vector<std::uint8_t> edges;
 
  private:
-  void add_part(const SoupPart& part, const Points& posed, const Eigen::VectorXf* values);
+  void add_vertices(const SoupPart& part, const Points& posed, const Eigen::VectorXf* values);
+  void add_triangles(const Soup& soup, const VertexMap* map, bool thin);
+  RTCGeometry make_geometry(std::size_t begin, std::size_t end) const;
   void build();
   RTCDevice device_ = nullptr;
-  RTCScene scene_ = nullptr;
+  RTCScene all_ = nullptr, solid_ = nullptr;
+  int solid_count_ = 0;
 };
 
 }  // namespace mien::detail

@@ -30,7 +30,7 @@ using Vec = Eigen::Vector3f;
 constexpr int samples = 16;
 constexpr float key_radius = 0.16f;  // of the light's disc at distance one: penumbrae as of a softbox
 constexpr float offset = 2e-5f;      // rays start this far off the surface; scene units
-const Vec key_color(1.02f, 0.98f, 0.92f), sky_color(0.60f, 0.63f, 0.68f), fill_color(0.13f, 0.13f, 0.14f);
+const Vec key_color(1.12f, 1.06f, 0.98f), sky_color(0.50f, 0.53f, 0.58f), fill_color(0.12f, 0.12f, 0.13f);
 
 /// What a pixel gathers in the first pass.
 struct Gathered {
@@ -82,6 +82,7 @@ class Tracer {
   Gathered gather(int x, int y) const;
 
  private:
+  void see_through_lashes(RTCRayHit16& rays, int cell) const;
   bool surface(const RTCRayHit16& rays, int s, Hit& hit) const;
   Vec base_color(const Look& look, int triangle, const Vec& corners) const;
   bool on_edge(int triangle, const Vec& corners, float depth) const;
@@ -97,7 +98,7 @@ class Tracer {
 
 Vec Tracer::base_color(const Look& look, int triangle, const Vec& corners) const {
   if (!scene_.mapped[triangle]) return look.albedo;
-  const auto t = scene_.triangles.row(triangle);
+  const Eigen::Vector3i& t = scene_.triangles[triangle];
   const float value =
       corners[0] * scene_.values[t[0]] + corners[1] * scene_.values[t[1]] + corners[2] * scene_.values[t[2]];
   const VertexMap& map = *options_.map;
@@ -107,7 +108,7 @@ Vec Tracer::base_color(const Look& look, int triangle, const Vec& corners) const
 
 /// Whether the point is within half a pixel of a polygon's edge.
 bool Tracer::on_edge(int triangle, const Vec& corners, float depth) const {
-  const auto t = scene_.triangles.row(triangle);
+  const Eigen::Vector3i& t = scene_.triangles[triangle];
   const Vec &a = scene_.positions[t[0]], &b = scene_.positions[t[1]], &c = scene_.positions[t[2]];
   const float twice_area = (b - a).cross(c - a).norm();
   const std::array<float, 3> sides{(c - b).norm(), (a - c).norm(), (b - a).norm()};
@@ -119,12 +120,12 @@ bool Tracer::on_edge(int triangle, const Vec& corners, float depth) const {
 
 bool Tracer::surface(const RTCRayHit16& rays, int s, Hit& hit) const {
   if (rays.hit.geomID[s] == RTC_INVALID_GEOMETRY_ID) return false;
-  const int triangle = static_cast<int>(rays.hit.primID[s]);
+  const int triangle = scene_.triangle_of(rays.hit.geomID[s], rays.hit.primID[s]);
   const Vec corners(1 - rays.hit.u[s] - rays.hit.v[s], rays.hit.u[s], rays.hit.v[s]);
   const Vec to_eye = -Vec(rays.ray.dir_x[s], rays.ray.dir_y[s], rays.ray.dir_z[s]);
   const Vec flat(rays.hit.Ng_x[s], rays.hit.Ng_y[s], rays.hit.Ng_z[s]);
   const float side = flat.dot(to_eye) < 0 ? -1.f : 1.f;
-  const auto t = scene_.triangles.row(triangle);
+  const Eigen::Vector3i& t = scene_.triangles[triangle];
   hit.position = hit.normal = Vec::Zero();
   for (int k = 0; k < 3; ++k) {
     hit.position += corners[k] * scene_.positions[t[k]];
@@ -195,9 +196,9 @@ void Tracer::shade(const std::array<Hit, samples>& hits, const std::array<int, s
   }
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
-  rtcOccluded16(valid.data(), scene_.embree(), &context, &sky);
+  rtcOccluded16(valid.data(), scene_.solid(), &context, &sky);
   context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-  rtcOccluded16(valid.data(), scene_.embree(), &context, &key);
+  rtcOccluded16(valid.data(), scene_.solid(), &context, &key);
   for (int s = 0; s < samples; ++s) {
     if (!valid[s]) continue;
     const Hit& hit = hits[s];
@@ -216,6 +217,24 @@ void Tracer::shade(const std::array<Hit, samples>& hits, const std::array<int, s
   }
 }
 
+/// Lashes are modelled as solid cards whose texture would show hairs: more than half of the rays pass.
+void Tracer::see_through_lashes(RTCRayHit16& rays, int cell) const {
+  alignas(64) std::array<int, samples> passes;
+  bool any = false;
+  for (int s = 0; s < samples; ++s) {
+    const bool thin = rays.hit.geomID[s] == 1;
+    passes[s] = thin && (s * 7 + cell * 3) % samples >= 7 ? -1 : 0;
+    if (!passes[s]) continue;
+    any = true;
+    rays.ray.tfar[s] = std::numeric_limits<float>::infinity();
+    rays.hit.geomID[s] = RTC_INVALID_GEOMETRY_ID;
+  }
+  if (!any) return;
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  rtcIntersect16(passes.data(), scene_.solid(), &context, &rays);
+}
+
 Gathered Tracer::gather(int x, int y) const {
   alignas(64) RTCRayHit16 rays;
   alignas(64) std::array<int, samples> valid;
@@ -230,7 +249,8 @@ Gathered Tracer::gather(int x, int y) const {
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
   context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-  rtcIntersect16(valid.data(), scene_.embree(), &context, &rays);
+  rtcIntersect16(valid.data(), scene_.all(), &context, &rays);
+  see_through_lashes(rays, cell_of(x, y));
   std::array<Hit, samples> hits;
   bool any = false;
   for (int s = 0; s < samples; ++s) {
