@@ -1,0 +1,260 @@
+#include "mien/transfer/carry_skeleton.h"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+#include "mien/core/error.h"
+#include "mien/geometry/similarity.h"
+
+namespace mien {
+namespace {
+
+std::size_t at(int index) { return static_cast<std::size_t>(index); }
+
+/// A matrix as translation, rotation, scale; false where it shears and the three cannot say it.
+bool decompose(const Eigen::Matrix4d& matrix, Transform& transform) {
+  const Eigen::Matrix3d linear = matrix.topLeftCorner<3, 3>();
+  transform.translation = matrix.topRightCorner<3, 1>();
+  transform.scale = linear.colwise().norm().transpose();
+  if (linear.determinant() < 0) transform.scale = -transform.scale;
+  const Eigen::Matrix3d rotation = closest_rotation(linear * transform.scale.cwiseInverse().asDiagonal());
+  transform.rotation = Eigen::Quaterniond(rotation).normalized();
+  return (transform.matrix() - matrix).topLeftCorner<3, 3>().norm() <= 1e-6 * linear.norm();
+}
+
+void set_local(Node& node, const Eigen::Matrix4d& local) {
+  node.has_matrix = !decompose(local, node.rest);
+  node.matrix = node.has_matrix ? local : Eigen::Matrix4d(Eigen::Matrix4d::Identity());
+}
+
+/// The model matrix after the map: moved, turned, its own scale kept.
+Eigen::Matrix4d carry_matrix(const Eigen::Matrix4d& matrix, const SpaceMap& map) {
+  const Eigen::Vector3d origin = matrix.topRightCorner<3, 1>();
+  Eigen::Matrix4d carried = matrix;
+  carried.topLeftCorner<3, 3>() = map.rotation(origin) * matrix.topLeftCorner<3, 3>();
+  carried.topRightCorner<3, 1>() = map.position(origin);
+  return carried;
+}
+
+std::vector<char> nodes_to_carry(const Character& source, const std::vector<int>& joint_of_node) {
+  std::vector<char> holds_part(source.nodes.size(), 0), carry(source.nodes.size(), 0);
+  for (const Part& part : source.parts)
+    if (part.node >= 0) holds_part[at(part.node)] = 1;
+  for (std::size_t n = 0; n < source.nodes.size(); ++n) {
+    if (joint_of_node[n] < 0 && holds_part[n]) continue;
+    for (int a = static_cast<int>(n); a >= 0 && !carry[at(a)]; a = source.nodes[at(a)].parent) carry[at(a)] = 1;
+  }
+  return carry;
+}
+
+/// All skins' joints in one list, then joints that hold parts without a skin.
+void collect_joints(const Character& source, CarriedSkeleton& result) {
+  result.joint_of_node.assign(source.nodes.size(), -1);
+  const auto add = [&](int node) {
+    int& joint = result.joint_of_node[at(node)];
+    if (joint < 0) {
+      joint = static_cast<int>(result.skin.joints.size());
+      result.skin.joints.push_back(node);
+    }
+    return joint;
+  };
+  for (const Skin& skin : source.skins) {
+    result.skin_joint.emplace_back();
+    for (const int node : skin.joints) result.skin_joint.back().push_back(add(node));
+  }
+  for (const Part& part : source.parts) {
+    const int node = holding_joint(source, part);
+    if (node >= 0) add(node);
+  }
+}
+
+/// Per joint of the joined list its matrix at bind time, in model space.
+std::vector<Eigen::Matrix4d> bind_matrices(const Character& source, const CarriedSkeleton& skeleton,
+                                           const std::vector<Eigen::Matrix4d>& model) {
+  std::vector<Eigen::Matrix4d> bind;
+  for (const int node : skeleton.skin.joints) bind.push_back(model[at(node)]);
+  for (std::size_t s = source.skins.size(); s-- > 0;) {
+    const Skin& skin = source.skins[s];
+    for (std::size_t j = 0; j < skin.joints.size() && j < skin.inverse_bind.size(); ++j) {
+      const Eigen::FullPivLU<Eigen::Matrix4d> lu(skin.inverse_bind[j]);
+      if (!lu.isInvertible())
+        throw invalid_input("skin " + skin.name + ", joint " + source.nodes[at(skin.joints[j])].name,
+                            "its inverse bind matrix is singular", "an invertible matrix");
+      bind[at(skeleton.skin_joint[s][j])] = lu.inverse();
+    }
+  }
+  return bind;
+}
+
+}  // namespace
+
+int holding_joint(const Character& source, const Part& part) {
+  if (part.skin >= 0 || source.skins.empty() || part.node < 0) return -1;
+  for (int n = source.nodes[at(part.node)].parent; n >= 0; n = source.nodes[at(n)].parent)
+    for (const Skin& skin : source.skins)
+      if (std::find(skin.joints.begin(), skin.joints.end(), n) != skin.joints.end()) return n;
+  return -1;
+}
+
+CarriedSkeleton carry_skeleton(const Character& source, const SpaceMap& map, int first_node) {
+  CarriedSkeleton result;
+  const auto model = model_matrices(source);
+  collect_joints(source, result);
+  const auto bind = bind_matrices(source, result, model);
+
+  // A joint's rest may differ from its bind pose (a character saved in a pose): the difference stays its own.
+  std::vector<Eigen::Matrix4d> carried_model(source.nodes.size());
+  result.growth.assign(source.nodes.size(), 1);
+  std::vector<Eigen::Matrix4d> carried_bind(bind.size());
+  for (std::size_t n = 0; n < source.nodes.size(); ++n) {
+    const Eigen::Vector3d origin = model[n].topRightCorner<3, 1>();
+    result.growth[n] = map.scale(origin);
+    carried_model[n] = carry_matrix(model[n], map);
+    const int joint = result.joint_of_node[n];
+    if (joint < 0) continue;
+    carried_bind[at(joint)] = carry_matrix(bind[at(joint)], map);
+    Eigen::Matrix4d difference = bind[at(joint)].inverse() * model[n];
+    difference.topRightCorner<3, 1>() *= result.growth[n];
+    if (!difference.isIdentity(1e-5)) carried_model[n] = carried_bind[at(joint)] * difference;
+  }
+
+  const auto carry = nodes_to_carry(source, result.joint_of_node);
+  result.node_of.assign(source.nodes.size(), -1);
+  int next = first_node;
+  for (std::size_t n = 0; n < source.nodes.size(); ++n)
+    if (carry[n]) result.node_of[n] = next++;
+  for (std::size_t n = 0; n < source.nodes.size(); ++n) {
+    if (!carry[n]) continue;
+    Node node = source.nodes[n];
+    const int parent = node.parent;
+    node.parent = parent < 0 ? -1 : result.node_of[at(parent)];
+    const Eigen::Matrix4d local =
+        parent < 0 ? carried_model[n] : Eigen::Matrix4d(carried_model[at(parent)].inverse() * carried_model[n]);
+    set_local(node, local);
+    result.nodes.push_back(std::move(node));
+  }
+  result.skin.name = source.skins.empty() ? "" : source.skins.front().name;
+  for (std::size_t j = 0; j < result.skin.joints.size(); ++j) {
+    result.skin.inverse_bind.push_back(carried_bind[j].inverse());
+    result.skin.joints[j] = result.node_of[at(result.skin.joints[j])];
+  }
+  if (!source.skins.empty() && source.skins.front().skeleton >= 0)
+    result.skin.skeleton = result.node_of[at(source.skins.front().skeleton)];
+  return result;
+}
+
+namespace {
+
+/// One key's values from the source's parent frame into the target's.
+class ChannelCarrier {
+ public:
+  ChannelCarrier(const Node& from, const Node& to, double growth) : from_(from.rest), to_(to.rest), growth_(growth) {
+    turn_ = to_.rotation * from_.rotation.inverse();
+    // Without a rotation of the rest in between, the turn is what the frames have, not rounding.
+    if (turn_.angularDistance(Eigen::Quaterniond::Identity()) < 1e-7) turn_.setIdentity();
+  }
+
+  void translation(float* value, bool tangent) const {
+    Eigen::Map<Eigen::Vector3f> v(value);
+    const Eigen::Vector3d offset = tangent ? Eigen::Vector3d::Zero() : from_.translation;
+    const Eigen::Vector3d moved = growth_ * (turn_ * (v.cast<double>() - offset));
+    v = (tangent ? moved : Eigen::Vector3d(moved + to_.translation)).cast<float>();
+  }
+  void rotation(float* value, bool tangent) const {
+    const Eigen::Quaterniond q(value[3], value[0], value[1], value[2]);
+    Eigen::Quaterniond r = turn_ * q;
+    if (!tangent) r.normalize();
+    value[0] = static_cast<float>(r.x());
+    value[1] = static_cast<float>(r.y());
+    value[2] = static_cast<float>(r.z());
+    value[3] = static_cast<float>(r.w());
+  }
+  void scale(float* value) const {
+    for (int k = 0; k < 3; ++k)
+      if (from_.scale[k] != 0) value[k] = static_cast<float>(value[k] * to_.scale[k] / from_.scale[k]);
+  }
+
+ private:
+  Transform from_, to_;
+  double growth_;
+  Eigen::Quaterniond turn_;
+};
+
+void carry_values(const ChannelCarrier& carrier, Channel& channel) {
+  const int width = channel.width();
+  const bool cubic = channel.interpolation == Interpolation::cubic_spline;
+  for (std::size_t i = 0; (i + 1) * static_cast<std::size_t>(width) <= channel.values.size(); ++i) {
+    float* value = channel.values.data() + i * static_cast<std::size_t>(width);
+    const bool tangent = cubic && i % 3 != 1;
+    if (channel.property == Channel::Property::translation) carrier.translation(value, tangent);
+    if (channel.property == Channel::Property::rotation) carrier.rotation(value, tangent);
+    if (channel.property == Channel::Property::scale) carrier.scale(value);
+  }
+}
+
+}  // namespace
+
+Clip carry_clip(const Character& source, const Clip& clip, const CarriedSkeleton& skeleton,
+                const std::vector<int>& shape_of, std::vector<std::string>& dropped) {
+  Clip result{clip.name, {}, clip.carried};
+  const int first_node = [&] {
+    for (const int n : skeleton.node_of)
+      if (n >= 0) return n;
+    return 0;
+  }();
+  for (const Channel& channel : clip.channels) {
+    Channel carried = channel;
+    carried.part = -1;
+    if (channel.property == Channel::Property::shape_weight) {
+      carried.shape = shape_of[at(channel.shape)];
+      if (carried.shape < 0) {
+        dropped.push_back("clip " + clip.name + ": shape " + source.shapes[at(channel.shape)].name);
+        continue;
+      }
+    } else {
+      carried.node = skeleton.node_of[at(channel.node)];
+      if (carried.node < 0) {
+        dropped.push_back("clip " + clip.name + ": node " + source.nodes[at(channel.node)].name);
+        continue;
+      }
+      carry_values(ChannelCarrier(source.nodes[at(channel.node)], skeleton.nodes[at(carried.node - first_node)],
+                                  skeleton.growth[at(channel.node)]),
+                   carried);
+    }
+    result.channels.push_back(std::move(carried));
+  }
+  return result;
+}
+
+std::vector<std::string> rig_differences(const Character& a, const Character& b) {
+  std::vector<std::string> lines;
+  const auto parent_name = [](const Character& c, const Node& node) {
+    return node.parent < 0 ? std::string("nothing") : c.nodes[at(node.parent)].name;
+  };
+  const auto joints = [](const Character& c) {
+    std::vector<int> list;
+    for (const Skin& skin : c.skins) list.insert(list.end(), skin.joints.begin(), skin.joints.end());
+    std::sort(list.begin(), list.end());
+    list.erase(std::unique(list.begin(), list.end()), list.end());
+    return list;
+  };
+  const auto compare = [&](const Character& x, const Character& y, const char* where, bool parents) {
+    for (const int j : joints(x)) {
+      const Node& node = x.nodes[at(j)];
+      const int other = find_node(y, node.name);
+      if (other < 0)
+        lines.push_back("joint " + node.name + " is missing in " + where);
+      else if (parents && parent_name(x, node) != parent_name(y, y.nodes[at(other)]))
+        lines.push_back("joint " + node.name + " hangs below " + parent_name(x, node) + " and below " +
+                        parent_name(y, y.nodes[at(other)]));
+    }
+    for (const Shape& shape : x.shapes)
+      if (find_shape(y, shape.name) < 0) lines.push_back("shape " + shape.name + " is missing in " + where);
+  };
+  compare(a, b, "the second", true);
+  compare(b, a, "the first", false);
+  return lines;
+}
+
+}  // namespace mien

@@ -1,0 +1,50 @@
+#pragma once
+/// Joints, their bind poses and their animation, placed in the target by a map of space.
+
+#include <Eigen/Core>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "mien/character/character.h"
+
+namespace mien {
+
+/// What the skeleton is carried by.
+struct SpaceMap {
+  std::function<Eigen::Vector3d(const Eigen::Vector3d&)> position;   ///< source model space to target model space
+  std::function<Eigen::Matrix3d(const Eigen::Vector3d&)> rotation;   ///< how directions turn there
+  std::function<double(const Eigen::Vector3d&)> scale;               ///< how lengths grow there
+};
+
+struct CarriedSkeleton {
+  std::vector<Node> nodes;         ///< to be appended to the target's nodes; parents count from `first_node`
+  std::vector<int> node_of;        ///< per source node: its index in the target, -1: not carried
+  Skin skin;                       ///< all source joints, inverse bind matrices for the target's model space
+  std::vector<std::vector<int>> skin_joint;  ///< per source skin, per joint: index into skin.joints
+  std::vector<int> joint_of_node;  ///< per source node: index into skin.joints, -1: not a joint
+  std::vector<double> growth;      ///< per source node: how much longer its translations become
+};
+
+/// Places every joint of every skin, their ancestors and the nodes that hold no part. Hierarchy, names and local
+/// rotations stay (thesis 4.7.2 and the errata: positions by the map, orientations by its rotation); lengths between
+/// joints follow the positions. Parts that hang below a joint without a skin make that joint part of the skin.
+///   first_node  the number of nodes that the target keeps of its own
+///   throws      invalid_input: cyclic nodes; a bind matrix that cannot be inverted (names skin and joint)
+CarriedSkeleton carry_skeleton(const Character& source, const SpaceMap& map, int first_node);
+
+/// The nearest joint at or above the node that holds a part without a skin, or -1.
+int holding_joint(const Character& source, const Part& part);
+
+/// Channels of one clip on the carried skeleton: translations relative to rest grow by `growth` and turn with the
+/// parent, rotations act from the new rest, scales stay factors of the rest's. Keys and interpolation stay.
+///   shape_of  per source shape: its index in the target, -1: left out
+///   dropped   receives one line a channel whose node or shape was not carried
+Clip carry_clip(const Character& source, const Clip& clip, const CarriedSkeleton& skeleton,
+                const std::vector<int>& shape_of, std::vector<std::string>& dropped);
+
+/// What two rigs differ in, one line a difference, empty when a clip of one plays on the other: joints by name and
+/// parent, shapes by name (thesis 4.8: the structure is checked first).
+std::vector<std::string> rig_differences(const Character& a, const Character& b);
+
+}  // namespace mien

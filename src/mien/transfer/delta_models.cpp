@@ -1,0 +1,83 @@
+#include "mien/transfer/delta_models.h"
+
+#include <Eigen/SparseCholesky>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "mien/core/error.h"
+#include "mien/geometry/laplacian.h"
+
+namespace mien {
+
+std::string_view name_of(DeltaModel model) {
+  switch (model) {
+    case DeltaModel::automatic: return "auto";
+    case DeltaModel::local: return "local";
+    case DeltaModel::raw: return "raw";
+    case DeltaModel::copy: return "copy";
+    case DeltaModel::warp: return "warp";
+    case DeltaModel::thesis: return "thesis";
+  }
+  return "auto";
+}
+
+Eigen::VectorXd local_scale(const PointsD& aligned, const PointsD& guide, const Triangles& triangles,
+                            double radius) {
+  const Eigen::VectorXd before = vertex_areas(aligned, triangles), after = vertex_areas(guide, triangles);
+  // A vertex without area (a stray one) gets a little, or its row would be empty.
+  const double least = 1e-6 * before.mean();
+  const Eigen::VectorXd mass = before.cwiseMax(least);
+  SparseMatrix system = radius * radius * cotangent_laplacian(aligned, triangles);
+  for (Eigen::Index v = 0; v < mass.size(); ++v) system.coeffRef(v, v) += mass[v];
+  Eigen::SimplicialLDLT<SparseMatrix> factor(system);
+  Eigen::MatrixXd right(mass.size(), 2);
+  right << mass, after.cwiseMax(0.01 * least);
+  const Eigen::MatrixXd smooth = factor.solve(right);
+  Eigen::VectorXd scale(mass.size());
+  for (Eigen::Index v = 0; v < mass.size(); ++v) {
+    const double ratio = smooth(v, 1) / smooth(v, 0);
+    scale[v] = ratio > 0 && std::isfinite(ratio) ? std::sqrt(ratio) : 1.0;
+  }
+  return scale;
+}
+
+std::vector<int> farthest_points(const PointsD& points, int count) {
+  std::vector<int> chosen;
+  if (points.rows() == 0) return chosen;
+  Eigen::Index next = 0;
+  (points.rowwise() - points.colwise().mean()).rowwise().squaredNorm().maxCoeff(&next);
+  const Eigen::Matrix<double, Eigen::Dynamic, 3> columns = points;
+  Eigen::ArrayXd distance = Eigen::ArrayXd::Constant(points.rows(), std::numeric_limits<double>::infinity());
+  while (static_cast<int>(chosen.size()) < std::min<Eigen::Index>(count, points.rows())) {
+    chosen.push_back(static_cast<int>(next));
+    distance = distance.min((columns.col(0).array() - points(next, 0)).square() +
+                            (columns.col(1).array() - points(next, 1)).square() +
+                            (columns.col(2).array() - points(next, 2)).square());
+    if (distance.maxCoeff(&next) <= 0) break;
+  }
+  return chosen;
+}
+
+ThinPlateSpline dense_spline(const PointsD& aligned, const PointsD& guide, const PointsD& landmarks_from,
+                             const PointsD& landmarks_to, int samples) {
+  const double diagonal = (aligned.colwise().maxCoeff() - aligned.colwise().minCoeff()).norm();
+  std::vector<Eigen::RowVector3d> from, to;
+  const auto add = [&](const Eigen::RowVector3d& a, const Eigen::RowVector3d& b) {
+    const bool near = std::any_of(from.begin(), from.end(),
+                                  [&](const Eigen::RowVector3d& other) { return (other - a).norm() < 1e-3 * diagonal; });
+    if (near) return;
+    from.push_back(a);
+    to.push_back(b);
+  };
+  for (Eigen::Index i = 0; i < landmarks_from.rows(); ++i) add(landmarks_from.row(i), landmarks_to.row(i));
+  for (const int v : farthest_points(aligned, samples)) add(aligned.row(v), guide.row(v));
+  PointsD a(static_cast<Eigen::Index>(from.size()), 3), b(a.rows(), 3);
+  for (Eigen::Index i = 0; i < a.rows(); ++i) {
+    a.row(i) = from[static_cast<std::size_t>(i)];
+    b.row(i) = to[static_cast<std::size_t>(i)];
+  }
+  return ThinPlateSpline(a, b, {1e-3, -1});
+}
+
+}  // namespace mien

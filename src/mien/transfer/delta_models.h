@@ -1,0 +1,41 @@
+#pragma once
+/// How a displacement of the source's skin becomes one of the target's: no single rule is right for copied artist
+/// shapes, joint-driven faces and cartoons, so there are several and a rule that chooses.
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "mien/geometry/mesh.h"
+#include "mien/geometry/thin_plate_spline.h"
+#include "mien/transfer/register_surfaces.h"
+
+namespace mien {
+
+enum class DeltaModel {
+  automatic,  ///< local, or the warp where the source's own contacts ask for it
+  local,      ///< s R d with s a smooth local scale of the surface's area
+  raw,        ///< s R d with the landmarks' scale
+  copy,       ///< R d: the same size in the files' units
+  warp,       ///< T(x + d) - T(x), T a spline through landmarks and 500 points of the guide
+  thesis,     ///< T(x + d) - T(x), T the landmarks' spline (thesis 4.7.2, with the errata's reading)
+};
+
+/// "auto", "local", ...: the names of the command line.
+std::string_view name_of(DeltaModel model);
+
+/// #V factors that bring the aligned source's areas to the guide's, smoothed over `radius`:
+/// s = sqrt(u1 / u0), (M + radius^2 L) u_k = areas_k, on the aligned source; 1 where nothing is known.
+///   aligned  #V x 3: the source after the similarity; guide #V x 3; radius in their units
+///   cost     one sparse factorisation, about 0.08 s at 14,000 vertices
+Eigen::VectorXd local_scale(const PointsD& aligned, const PointsD& guide, const Triangles& triangles, double radius);
+
+/// A spline from the aligned source to the guide through the landmarks and `samples` farthest-point vertices.
+///   landmarks_from, landmarks_to  #L x 3 in the same frames; diagonal smoothing 1e-3 of the box
+ThinPlateSpline dense_spline(const PointsD& aligned, const PointsD& guide, const PointsD& landmarks_from,
+                             const PointsD& landmarks_to, int samples = 500);
+
+/// Indices of `count` rows, each the farthest from those before, starting with the row farthest from the mean.
+std::vector<int> farthest_points(const PointsD& points, int count);
+
+}  // namespace mien

@@ -1,0 +1,287 @@
+// Rigid pieces (an eyeball, a row of teeth) must stay rigid: interpolating the motion of whatever lies closest bends
+// them. So the donors' motion is first looked at as a whole; when it is a rigid motion, the target's piece makes the
+// same rotation about its own centre and the same translation, scaled. Only what bends on the source (a tongue) bends.
+#include "mien/transfer/detail/inner_pieces.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cmath>
+#include <map>
+
+#include "mien/geometry/surface_query.h"
+
+namespace mien::detail {
+namespace {
+
+std::size_t at(int index) { return static_cast<std::size_t>(index); }
+
+std::string lower(std::string text) {
+  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return text;
+}
+
+bool has(const std::string& text, std::initializer_list<const char*> words) {
+  return std::any_of(words.begin(), words.end(), [&](const char* w) { return text.find(w) != std::string::npos; });
+}
+
+/// +1 upper, -1 lower, 0 not said.
+int row_from_name(const std::string& name) {
+  const std::string n = lower(name);
+  return has(n, {"upper", "top"}) ? 1 : has(n, {"lower", "bottom"}) ? -1 : 0;
+}
+
+PointsD rows(const PointsD& points, const std::vector<int>& which) {
+  PointsD result(static_cast<Eigen::Index>(which.size()), 3);
+  for (std::size_t i = 0; i < which.size(); ++i) result.row(static_cast<Eigen::Index>(i)) = points.row(which[i]);
+  return result;
+}
+
+std::vector<int> vertices_of(const Pool& pool, int piece) {
+  std::vector<int> result;
+  for (std::size_t v = 0; v < pool.piece.size(); ++v)
+    if (pool.piece[v] == piece) result.push_back(static_cast<int>(v));
+  return result;
+}
+
+/// A ball: distances from the centre of the box differ little. Half-balls and eyes with a cornea pass.
+bool is_ball(const PointsD& points, double unit) {
+  const Eigen::RowVector3d low = points.colwise().minCoeff(), high = points.colwise().maxCoeff();
+  const Eigen::RowVector3d size = high - low;
+  if (points.rows() < 20 || size.maxCoeff() > 0.5 * unit || size.minCoeff() < 0.6 * size.maxCoeff()) return false;
+  const Eigen::VectorXd radius = (points.rowwise() - (low + high) / 2).rowwise().norm();
+  return radius.minCoeff() > 0.7 * radius.maxCoeff();
+}
+
+PieceKind kind_of(const Pool& pool, int piece, double unit) {
+  const PieceKind named = kind_from_name(pool.piece_name[at(piece)]);
+  if (named != PieceKind::other) return named;
+  return is_ball(rows(pool.positions, vertices_of(pool, piece)), unit) ? PieceKind::eye : PieceKind::other;
+}
+
+/// Source pieces that may give to a target piece: not skin, not worn on the skin, of the same kind and row when both
+/// sides say what they are.
+std::vector<char> donor_pieces(const PieceInput& in, PieceKind kind, const std::string& name,
+                               const std::vector<PieceKind>& source_kinds) {
+  std::vector<char> same(source_kinds.size(), 0), any(source_kinds.size(), 0);
+  bool found_same = false;
+  for (std::size_t p = 0; p < source_kinds.size(); ++p) {
+    if (in.source_skin[p] || source_kinds[p] == PieceKind::lash) continue;
+    const int row = row_from_name(name), source_row = row_from_name(in.source.piece_name[p]);
+    if (row * source_row < 0) continue;
+    const bool eye = kind == PieceKind::eye, source_eye = source_kinds[p] == PieceKind::eye;
+    any[p] = eye == source_eye || kind == PieceKind::other;
+    same[p] = kind != PieceKind::other && source_kinds[p] == kind;
+    found_same = found_same || same[p];
+  }
+  return found_same ? same : any;
+}
+
+/// Where the piece's donors are, or false when nothing of the source lies near.
+bool find_donors(const PieceInput& in, const std::vector<char>& donors, PiecePlan& plan) {
+  const PoolSurface source = select_pieces(in.source, donors);
+  if (source.surface.triangles.rows() == 0) return false;
+  PointsD warped = rows(in.warped_source, source.vertices);
+  const SurfaceQuery query(warped, source.surface.triangles);
+  std::vector<double> distance;
+  std::map<int, int> votes;
+  for (const int v : plan.vertices) {
+    const auto hit = query.closest(in.target.positions.row(v).transpose());
+    distance.push_back(hit.distance);
+    plan.triangle.push_back(source.triangles[at(hit.triangle)]);
+    plan.barycentric.push_back(hit.barycentric);
+    ++votes[in.source.piece[at(in.source.triangles(plan.triangle.back(), 0))]];
+  }
+  std::nth_element(distance.begin(), distance.begin() + static_cast<long>(distance.size() / 2), distance.end());
+  if (distance[distance.size() / 2] > 0.15 * in.unit) return false;
+  for (const auto& [piece, count] : votes) {
+    if (count < 0.05 * static_cast<double>(plan.vertices.size())) continue;
+    const auto members = vertices_of(in.source, piece);
+    plan.donor_vertices.insert(plan.donor_vertices.end(), members.begin(), members.end());
+  }
+  return !plan.donor_vertices.empty();
+}
+
+struct SkinFit {
+  double mean_distance = 0, behind = 0;  // share of vertices that lie behind the skin
+};
+
+/// The closest place on the target's skin for every vertex of the piece.
+SkinFit find_skin(const PieceInput& in, const SurfaceQuery& skin, PiecePlan& plan) {
+  SkinFit fit;
+  const Triangles& triangles = in.target_surface.surface.triangles;
+  const PointsD& positions = in.target_surface.surface.positions;
+  plan.triangle.clear();
+  plan.barycentric.clear();
+  for (const int v : plan.vertices) {
+    const Eigen::Vector3d position = in.target.positions.row(v).transpose();
+    const auto hit = skin.closest(position);
+    const auto corner = [&](int k) { return Eigen::Vector3d(positions.row(triangles(hit.triangle, k))); };
+    const Eigen::Vector3d normal = (corner(1) - corner(0)).cross(corner(2) - corner(0));
+    plan.triangle.push_back(hit.triangle);
+    plan.barycentric.push_back(hit.barycentric);
+    plan.fade.push_back(std::exp(-std::pow(hit.distance / (0.15 * in.unit), 2)));
+    fit.mean_distance += hit.distance / static_cast<double>(plan.vertices.size());
+    fit.behind += (normal.dot(position - hit.position) < 0) / static_cast<double>(plan.vertices.size());
+  }
+  return fit;
+}
+
+/// R (x - centre) + centre + shift.
+struct RigidMotion {
+  Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero(), shift = Eigen::Vector3d::Zero();
+  double residual = 0;  // rms of what is not rigid over rms of the motion
+};
+
+RigidMotion fit_rigid(const PointsD& rest, const PointsD& delta) {
+  RigidMotion motion;
+  motion.centre = rest.colwise().mean().transpose();
+  motion.shift = delta.colwise().mean().transpose();
+  const PointsD a = rest.rowwise() - motion.centre.transpose();
+  const PointsD b = (rest + delta).rowwise() - (motion.centre + motion.shift).transpose();
+  motion.rotation = closest_rotation(b.transpose() * a);
+  const double total = delta.norm();
+  motion.residual = total > 0 ? (b - a * motion.rotation.transpose()).norm() / total : 0;
+  return motion;
+}
+
+PointsD apply_rigid(const RigidMotion& motion, const PointsD& positions) {
+  const PointsD centred = positions.rowwise() - motion.centre.transpose();
+  return (centred * motion.rotation.transpose() - centred).rowwise() + motion.shift.transpose();
+}
+
+PointsD carry_from_donors(const PieceInput& in, const PiecePlan& plan, const PointsD& source_delta) {
+  const PointsD rest = rows(in.source.positions, plan.donor_vertices);
+  const PointsD delta = rows(source_delta, plan.donor_vertices);
+  const PointsD own = rows(in.target.positions, plan.vertices);
+  const Eigen::Matrix3d& turn = in.similarity.rotation;
+  if (!(delta.cwiseAbs().maxCoeff() > 0)) return PointsD::Zero(own.rows(), 3);
+  const RigidMotion motion = fit_rigid(rest, delta);
+  if (motion.residual < 0.12) {
+    RigidMotion carried;
+    carried.rotation = turn * motion.rotation * turn.transpose();
+    carried.centre = own.colwise().mean().transpose();
+    carried.shift = plan.growth * (turn * motion.shift);
+    return apply_rigid(carried, own);
+  }
+  PointsD result = PointsD::Zero(own.rows(), 3);
+  for (std::size_t i = 0; i < plan.vertices.size(); ++i) {
+    Eigen::Vector3d d = Eigen::Vector3d::Zero();
+    for (int k = 0; k < 3; ++k)
+      d += plan.barycentric[i][k] * source_delta.row(in.source.triangles(plan.triangle[i], k)).transpose();
+    result.row(static_cast<Eigen::Index>(i)) = plan.growth * (turn * d).transpose();
+  }
+  return result;
+}
+
+PointsD carry_from_skin(const PieceInput& in, const PiecePlan& plan, const PointsD& skin_delta) {
+  PointsD result(static_cast<Eigen::Index>(plan.vertices.size()), 3);
+  for (std::size_t i = 0; i < plan.vertices.size(); ++i) {
+    Eigen::RowVector3d d = Eigen::RowVector3d::Zero();
+    for (int k = 0; k < 3; ++k)
+      d += plan.barycentric[i][k] * skin_delta.row(in.target_surface.surface.triangles(plan.triangle[i], k));
+    result.row(static_cast<Eigen::Index>(i)) = plan.fade[i] * d;
+  }
+  return result;
+}
+
+/// The skin beneath as a rigid body; taken back where it is none (a lip that is pulled down does not move the teeth).
+PointsD carry_with_jaw(const PieceInput& in, const PiecePlan& plan, const PointsD& skin_delta) {
+  PiecePlan beneath = plan;
+  std::fill(beneath.fade.begin(), beneath.fade.end(), 1.0);
+  const PointsD own = rows(in.target.positions, plan.vertices);
+  const PointsD delta = carry_from_skin(in, beneath, skin_delta);
+  if (!(delta.cwiseAbs().maxCoeff() > 0)) return PointsD::Zero(own.rows(), 3);
+  const RigidMotion motion = fit_rigid(own, delta);
+  const double share = std::clamp((0.6 - motion.residual) / 0.35, 0.0, 1.0);
+  return share * apply_rigid(motion, own);
+}
+
+}  // namespace
+
+PieceKind kind_from_name(const std::string& name) {
+  const std::string n = lower(name);
+  if (has(n, {"lash", "brow", "beard", "hair", "mustache", "moustache"})) return PieceKind::lash;
+  if (has(n, {"teeth", "tooth", "gum", "denture"})) return PieceKind::teeth;
+  if (has(n, {"tongue"})) return PieceKind::tongue;
+  if (has(n, {"eye", "cornea", "iris", "pupil", "sclera"}) && !has(n, {"lid"})) return PieceKind::eye;
+  return PieceKind::other;
+}
+
+std::vector<PiecePlan> plan_pieces(const PieceInput& in) {
+  std::vector<PieceKind> source_kinds;
+  for (int p = 0; p < in.source.piece_count; ++p)
+    source_kinds.push_back(in.source_skin[at(p)] ? PieceKind::skin : kind_of(in.source, p, in.unit / in.similarity.scale));
+  const SurfaceQuery skin(in.target_surface.surface.positions, in.target_surface.surface.triangles);
+  std::vector<PiecePlan> plans;
+  for (int p = 0; p < in.target.piece_count; ++p) {
+    if (in.target_skin[at(p)]) continue;
+    PiecePlan plan;
+    plan.piece = p;
+    plan.kind = kind_of(in.target, p, in.unit);
+    plan.vertices = vertices_of(in.target, p);
+    plan.growth = in.similarity.scale;
+    const auto donors = donor_pieces(in, plan.kind, in.target.piece_name[at(p)], source_kinds);
+    if (plan.kind != PieceKind::lash && find_donors(in, donors, plan)) {
+      plan.way = PiecePlan::Way::donors;
+    } else {
+      const SkinFit fit = find_skin(in, skin, plan);
+      const bool worn = plan.kind == PieceKind::lash ||
+                        (plan.kind == PieceKind::other && (fit.behind < 0.5 || fit.mean_distance < 0.02 * in.unit));
+      if (worn)
+        plan.way = PiecePlan::Way::attached;
+      else if (plan.kind == PieceKind::eye)
+        plan.way = PiecePlan::Way::still;
+      else
+        plan.way = PiecePlan::Way::jaw;
+    }
+    plans.push_back(std::move(plan));
+  }
+  return plans;
+}
+
+PointsD carry_piece(const PieceInput& in, const PiecePlan& plan, const PointsD& source_delta,
+                    const PointsD& skin_delta) {
+  switch (plan.way) {
+    case PiecePlan::Way::donors: return carry_from_donors(in, plan, source_delta);
+    case PiecePlan::Way::attached: return carry_from_skin(in, plan, skin_delta);
+    case PiecePlan::Way::jaw: return carry_with_jaw(in, plan, skin_delta);
+    case PiecePlan::Way::still: break;
+  }
+  return PointsD::Zero(static_cast<Eigen::Index>(plan.vertices.size()), 3);
+}
+
+WeightMatrix carry_piece_weights(const PieceInput& in, const PiecePlan& plan, const WeightMatrix& source_weights,
+                                 const WeightMatrix& skin_weights, int head_joint) {
+  const bool donors = plan.way == PiecePlan::Way::donors;
+  const Triangles& triangles = donors ? in.source.triangles : in.target_surface.surface.triangles;
+  const WeightMatrix& weights = donors ? source_weights : skin_weights;
+  std::vector<Eigen::Triplet<double>> entries;
+  for (std::size_t i = 0; i < plan.vertices.size(); ++i) {
+    const int row = static_cast<int>(i);
+    double sum = 0;
+    for (int k = 0; k < 3 && plan.way != PiecePlan::Way::still; ++k)
+      for (WeightMatrix::InnerIterator entry(weights, triangles(plan.triangle[i], k)); entry; ++entry) {
+        entries.emplace_back(row, static_cast<int>(entry.col()), plan.barycentric[i][k] * entry.value());
+        sum += plan.barycentric[i][k] * entry.value();
+      }
+    if (!(sum > 0)) entries.emplace_back(row, head_joint, 1.0);
+  }
+  WeightMatrix result(static_cast<Eigen::Index>(plan.vertices.size()), weights.cols());
+  result.setFromTriplets(entries.begin(), entries.end());
+  return result;
+}
+
+std::string_view name_of(PieceKind kind) {
+  constexpr std::array<std::string_view, 6> names{"skin", "eye", "teeth", "tongue", "lash", "other"};
+  return names[static_cast<std::size_t>(kind)];
+}
+
+std::string_view name_of(PiecePlan::Way way) {
+  constexpr std::array<std::string_view, 4> names{"source part", "skin beneath", "jaw", "still"};
+  return names[static_cast<std::size_t>(way)];
+}
+
+}  // namespace mien::detail

@@ -1,0 +1,68 @@
+#pragma once
+/// What is in or on the head without being its skin: eyes, teeth, tongue, lashes. Each piece of the target is joined to
+/// pieces of the source by name or by where they lie, or follows the skin around it; none is dragged onto the skin.
+
+#include <string>
+#include <vector>
+
+#include "mien/geometry/similarity.h"
+#include "mien/transfer/carry_skin_weights.h"
+#include "mien/transfer/detail/pool.h"
+
+namespace mien::detail {
+
+enum class PieceKind { skin, eye, teeth, tongue, lash, other };
+
+/// Reads the kind from a name ("l-eye", "upper-teeth", "Lashes"); `other` when it says nothing.
+PieceKind kind_from_name(const std::string& name);
+
+/// How one target piece gets its motion.
+struct PiecePlan {
+  enum class Way {
+    donors,    ///< from the source's pieces at the same place
+    attached,  ///< from the target's own skin beneath it
+    jaw,       ///< as a rigid body with the skin around it, where that moves rigidly
+    still,     ///< not moved by shapes; bound to the head
+  };
+  int piece = 0;
+  PieceKind kind = PieceKind::other;
+  Way way = Way::still;
+  std::vector<int> vertices;  ///< pooled target vertices
+  /// donors: per vertex a triangle of the source pool; attached and jaw: a triangle of the target skin's surface
+  std::vector<int> triangle;
+  std::vector<Eigen::Vector3d> barycentric;
+  std::vector<double> fade;         ///< attached: 1 on the skin, falling with distance
+  std::vector<int> donor_vertices;  ///< donors: pooled source vertices whose motion is looked at as a whole
+  double growth = 1;                ///< how lengths grow there, source to target
+};
+
+struct PieceInput {
+  const Pool& source;
+  const Pool& target;
+  const std::vector<char>& source_skin;  ///< per piece
+  const std::vector<char>& target_skin;
+  const PoolSurface& target_surface;
+  const PointsD& warped_source;  ///< pooled source positions brought to the target by the dense spline
+  const Similarity& similarity;
+  double unit = 1;
+};
+
+/// One plan a target piece that is not skin, in piece order.
+std::vector<PiecePlan> plan_pieces(const PieceInput& input);
+
+/// The displacement (#vertices of the plan x 3, target model space) of one shape.
+///   source_delta  pooled source vertices x 3, source model space
+///   skin_delta    rows of the target's skin surface x 3, target model space: what was carried already
+PointsD carry_piece(const PieceInput& input, const PiecePlan& plan, const PointsD& source_delta,
+                    const PointsD& skin_delta);
+
+/// Skin weights (#vertices of the plan x #J).
+///   source_weights  pooled source vertices x #J; skin_weights: rows of the target's skin surface x #J
+///   head_joint      the joint that carries most of the skin: what still pieces are bound to
+WeightMatrix carry_piece_weights(const PieceInput& input, const PiecePlan& plan, const WeightMatrix& source_weights,
+                                 const WeightMatrix& skin_weights, int head_joint);
+
+std::string_view name_of(PieceKind kind);
+std::string_view name_of(PiecePlan::Way way);
+
+}  // namespace mien::detail
