@@ -63,8 +63,10 @@ void add_shapes(BuiltCharacter& built, const CharacterForm& form, const FaceRegi
     };
     add(face_part, face.skin);
     if (!face.eye_left.still()) add(left_eye_part, moved(character.parts[left_eye_part].mesh, face.eye_left));
-    if (!face.eye_right.still()) add(right_eye_part, moved(character.parts[right_eye_part].mesh, face.eye_right));
-    if (!face.lower_teeth.still()) add(lower_teeth_part, moved(character.parts[lower_teeth_part].mesh, face.lower_teeth));
+    if (!face.eye_right.still())
+      add(right_eye_part, moved(character.parts[right_eye_part].mesh, face.eye_right));
+    if (!face.lower_teeth.still())
+      add(lower_teeth_part, moved(character.parts[lower_teeth_part].mesh, face.lower_teeth));
     const Mesh& tongue = character.parts[tongue_part].mesh;
     if (face.tongue_out)
       add(tongue_part, tongue_out(tongue, form.tongue));

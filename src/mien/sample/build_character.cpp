@@ -32,7 +32,8 @@ Mesh skin_mesh(const HeadMesh& head) {
     for (std::size_t f = 0; f < head.faces.size(); ++f) {
       if (material_of(head.faces[f]) != group) continue;
       mesh.faces.push_back(head.faces[f]);
-      for (int c = head.faces.offset(f); c < head.faces.offset(f + 1); ++c) uv.corners.push_back(head.uv.corners[c]);
+      for (int c = head.faces.offset(f); c < head.faces.offset(f + 1); ++c)
+        uv.corners.push_back(head.uv.corners[c]);
     }
     run.face_end = static_cast<int>(mesh.faces.size());
     run.vertex_end = static_cast<int>(head.points.size());
@@ -128,7 +129,8 @@ void place(Character& character, double scale, const Eigen::Quaterniond& turn, c
   }
   const auto matrices = model_matrices(character);
   for (Skin& skin : character.skins)
-    for (std::size_t j = 0; j < skin.joints.size(); ++j) skin.inverse_bind[j] = matrices[skin.joints[j]].inverse();
+    for (std::size_t j = 0; j < skin.joints.size(); ++j)
+      skin.inverse_bind[j] = matrices[skin.joints[j]].inverse();
   for (Clip& clip : character.clips)
     for (Channel& channel : clip.channels)
       if (channel.property == Channel::Property::translation)

@@ -1,5 +1,5 @@
-// Lids turn about the eye's centre, so that they slide on the eyeball; the loops around the eye follow less the
-// farther out they are.
+// Lids turn about the eye's centre, so that they slide on the eyeball; the loops around the eye follow less
+// the farther out they are.
 
 #include <algorithm>
 #include <cmath>
@@ -12,7 +12,8 @@ namespace mien::sample {
 
 namespace {
 
-/// Displacement of the left eye's loops when each place of the lids' edges rises by `raise(upper, t)` degrees.
+/// Displacement of the left eye's loops when each place of the lids' edges rises by `raise(upper, t)`
+/// degrees.
 template <typename Raise>
 Field turn_lids(const HeadMesh& head, const HeadForm& form, const FaceRegions& regions, Raise raise) {
   Field field(head.points.size(), Vector3d::Zero());
@@ -37,7 +38,8 @@ Field turn_lids(const HeadMesh& head, const HeadForm& form, const FaceRegions& r
 
 }  // namespace
 
-Field lid_field(const HeadMesh& head, const HeadForm& form, const FaceRegions& regions, double upper, double lower) {
+Field lid_field(const HeadMesh& head, const HeadForm& form, const FaceRegions& regions, double upper,
+                double lower) {
   return turn_lids(head, form, regions, [&](bool is_upper, double t) {
     return (is_upper ? upper : lower) * std::pow(std::sin(std::numbers::pi * t), 0.7);
   });

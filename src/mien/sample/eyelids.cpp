@@ -16,7 +16,9 @@ Vector3d eye_direction(double azimuth, double elevation) {
 
 namespace {
 
-double corner_line(const EyeForm& eye, double t) { return eye.inner_tilt + t * (eye.outer_tilt - eye.inner_tilt); }
+double corner_line(const EyeForm& eye, double t) {
+  return eye.inner_tilt + t * (eye.outer_tilt - eye.inner_tilt);
+}
 
 /// 0 at the corners, 1 at the lid's highest point, which lies `early` (towards the nose) or late along it.
 double arch(const EyeForm& eye, double t, double skew) {
@@ -55,7 +57,8 @@ void add_eyelids(HalfHead& half, const HeadForm& form) {
   const auto push = [&](const std::vector<Vector3d>& points, HalfHead::Hold hold, int k) {
     Loop loop;
     for (int a = 0; a < count; ++a)
-      loop.push_back(half.add(points[a], half.uvs[border[a]] + (uv_centre - half.uvs[border[a]]) * (0.92 * k / total), hold));
+      loop.push_back(half.add(
+          points[a], half.uvs[border[a]] + (uv_centre - half.uvs[border[a]]) * (0.92 * k / total), hold));
     half.bridge(half.eye.back(), loop, true);
     half.eye.push_back(loop);
   };
@@ -76,7 +79,9 @@ void add_eyelids(HalfHead& half, const HeadForm& form) {
     for (int a = 0; a < count; ++a) {
       Eigen::Vector2d e = edge(a);
       e = middle + (e - middle) * spread;
-      ring[a] = eye.centre + (eye.radius + radius) * eye_direction(e.x(), e.y() + (a == 0 || a == turn ? 0 : a < turn ? extra : -extra));
+      ring[a] = eye.centre + (eye.radius + radius) * eye_direction(e.x(), e.y() + (a == 0 || a == turn ? 0
+                                                                                   : a < turn          ? extra
+                                                                                              : -extra));
     }
   };
   at(eye.lid_thickness, 1, 0);

@@ -39,7 +39,9 @@ Field operator+(Field a, const Field& b) {
 class Shapes {
  public:
   explicit Shapes(const HeadMesh& head) : head_(head) {}
-  void add(const std::string& name, Field skin) { list.push_back({name, std::move(skin), {}, {}, {}, {}, false}); }
+  void add(const std::string& name, Field skin) {
+    list.push_back({name, std::move(skin), {}, {}, {}, {}, false});
+  }
   /// NAME + Left and NAME + Right.
   void add_pair(const std::string& name, const Field& left) {
     add(name + "Left", left);
@@ -64,8 +66,8 @@ void add_eyes(Shapes& shapes, const HeadMesh& head, const HeadForm& form, const 
       motion.degrees = left || axis.x() != 0 ? degrees : -degrees;
     }
   };
-  shapes.add_pair("eyeBlink", blink_field(head, form, regions) +
-                                  pull({{{3.2, 1.5, 8.2}, {2.2, 1.0, 2}, {0, -0.12, 0}}}));
+  shapes.add_pair("eyeBlink",
+                  blink_field(head, form, regions) + pull({{{3.2, 1.5, 8.2}, {2.2, 1.0, 2}, {0, -0.12, 0}}}));
   shapes.add_pair("eyeLookDown", lids(-15, -5));
   gaze(Vector3d::UnitX(), 24);
   shapes.add_pair("eyeLookIn", lids(-1, 1));
@@ -105,39 +107,43 @@ void add_lips(Shapes& shapes, const HeadMesh& head, const HeadForm& form, const 
   const Field aside = pull({{middle, {4.4, 3.2, 4}, {0.95, 0.06, -0.1}}});
   shapes.add("mouthLeft", aside);
   shapes.add("mouthRight", mirrored(head, aside));
-  shapes.add_pair("mouthSmile",
-                  pull({{corner, {2.9, 2.3, 3.4}, {0.52, 0.8, -0.5}},
-                        {{4.0, -3.9, 8.0}, {2.3, 2.2, 2.6}, {0.2, 0.3, 0.28}}}) +
-                      lid_field(head, form, regions, 0, 3));
+  shapes.add_pair("mouthSmile", pull({{corner, {2.9, 2.3, 3.4}, {0.52, 0.8, -0.5}},
+                                      {{4.0, -3.9, 8.0}, {2.3, 2.2, 2.6}, {0.2, 0.3, 0.28}}}) +
+                                    lid_field(head, form, regions, 0, 3));
   shapes.add_pair("mouthFrown", pull({{corner, {2.2, 2.0, 3}, {0.08, -0.75, -0.1}}}));
   shapes.add_pair("mouthDimple", pull({{corner, {1.9, 1.7, 2.4}, {0.4, 0.06, -0.55}}}));
   shapes.add_pair("mouthStretch", pull({{corner, {2.8, 2.3, 3.4}, {0.72, -0.32, -0.5}},
                                         {{3.4, -10, 6}, {2.6, 2.6, 4}, {0.15, -0.2, 0}}}));
   shapes.add("mouthRollLower", lip_roll(head, form, regions, false));
   shapes.add("mouthRollUpper", lip_roll(head, form, regions, true));
-  shapes.add("mouthShrugLower", pull({{{0, m.line - 1.6, m.front - 0.4}, {3.2, 3.0, 3.4}, {0, 0.5, 0.18}, On::lower},
-                                      {{0, m.line, m.front - 0.3}, {2.8, 1.8, 3}, {0, 0.34, 0.12}, On::upper}}));
-  shapes.add("mouthShrugUpper", pull({{{0, m.line + 0.4, m.front}, {2.9, 2.0, 3}, {0, 0.34, 0.22}, On::upper},
-                                      {{0, m.line, m.front - 0.3}, {2.5, 1.3, 3}, {0, 0.22, 0.1}, On::lower}}));
+  shapes.add("mouthShrugLower",
+             pull({{{0, m.line - 1.6, m.front - 0.4}, {3.2, 3.0, 3.4}, {0, 0.5, 0.18}, On::lower},
+                   {{0, m.line, m.front - 0.3}, {2.8, 1.8, 3}, {0, 0.34, 0.12}, On::upper}}));
+  shapes.add("mouthShrugUpper",
+             pull({{{0, m.line + 0.4, m.front}, {2.9, 2.0, 3}, {0, 0.34, 0.22}, On::upper},
+                   {{0, m.line, m.front - 0.3}, {2.5, 1.3, 3}, {0, 0.22, 0.1}, On::lower}}));
   shapes.add_pair("mouthPress", lip_press(head, form, regions));
-  shapes.add_pair("mouthLowerDown", pull({{{1.1, m.line - 0.5, m.front - 0.5}, {2.2, 2.1, 3}, {0.1, -0.75, 0}, On::lower}}));
-  shapes.add_pair("mouthUpperUp", pull({{{1.1, m.line + 0.4, m.front - 0.5}, {2.2, 2.0, 3}, {0.08, 0.6, 0.05}, On::upper},
-                                        {{1.6, -4.2, 10}, {1.3, 1.3, 1.6}, {0.06, 0.14, 0}}}));
+  shapes.add_pair("mouthLowerDown",
+                  pull({{{1.1, m.line - 0.5, m.front - 0.5}, {2.2, 2.1, 3}, {0.1, -0.75, 0}, On::lower}}));
+  shapes.add_pair("mouthUpperUp",
+                  pull({{{1.1, m.line + 0.4, m.front - 0.5}, {2.2, 2.0, 3}, {0.08, 0.6, 0.05}, On::upper},
+                        {{1.6, -4.2, 10}, {1.3, 1.3, 1.6}, {0.06, 0.14, 0}}}));
 }
 
-void add_brows_cheeks_nose(Shapes& shapes, const HeadMesh& head, const HeadForm& form, const FaceRegions& regions) {
+void add_brows_cheeks_nose(Shapes& shapes, const HeadMesh& head, const HeadForm& form,
+                           const FaceRegions& regions) {
   const auto pull = [&](const std::vector<Pull>& pulls) { return pulled(head, regions, pulls); };
   shapes.add_pair("browDown", pull({{{1.7, 2.0, 9}, {2.3, 1.7, 2.6}, {-0.18, -0.55, 0.12}},
                                     {{3.8, 2.2, 8}, {2.3, 1.5, 2.6}, {-0.05, -0.36, 0.04}}}) +
-                                   lid_field(head, form, regions, -3, 0));
+                                  lid_field(head, form, regions, -3, 0));
   const Field inner = pull({{{1.4, 2.4, 9}, {2.1, 2.6, 2.8}, {0.02, 0.72, -0.06}}});
   shapes.add("browInnerUp", inner + mirrored(head, inner));
   shapes.add_pair("browOuterUp", pull({{{4.2, 2.4, 7.8}, {2.3, 2.6, 2.8}, {0.04, 0.75, -0.12}}}) +
-                                      lid_field(head, form, regions, 2, 0));
+                                     lid_field(head, form, regions, 2, 0));
   const Field puff = pull({{{3.9, -6.0, 7.6}, {2.7, 3.2, 3.6}, {0.8, 0, 0.5}}});
   shapes.add("cheekPuff", puff + mirrored(head, puff) + lips_gathered(head, form, regions, 0.06, 0, 0.12));
   shapes.add_pair("cheekSquint", pull({{{3.7, -2.4, 8}, {2.3, 1.9, 2.6}, {0.08, 0.55, 0.22}}}) +
-                                      lid_field(head, form, regions, 0, 6));
+                                     lid_field(head, form, regions, 0, 6));
   shapes.add_pair("noseSneer", pull({{{1.3, -3.4, 10}, {1.5, 2.2, 2.2}, {0.05, 0.5, 0.06}, On::upper},
                                      {{1.4, -6.1, 10}, {1.5, 1.3, 2.2}, {0.02, 0.3, 0.03}, On::upper},
                                      {{1.2, 1.6, 9}, {1.3, 1.2, 2}, {-0.04, -0.2, 0.05}}}));
@@ -145,19 +151,24 @@ void add_brows_cheeks_nose(Shapes& shapes, const HeadMesh& head, const HeadForm&
 
 /// ARKit's own order.
 const char* const kOrder[52] = {
-    "browDownLeft", "browDownRight", "browInnerUp", "browOuterUpLeft", "browOuterUpRight", "cheekPuff",
-    "cheekSquintLeft", "cheekSquintRight", "eyeBlinkLeft", "eyeBlinkRight", "eyeLookDownLeft", "eyeLookDownRight",
-    "eyeLookInLeft", "eyeLookInRight", "eyeLookOutLeft", "eyeLookOutRight", "eyeLookUpLeft", "eyeLookUpRight",
-    "eyeSquintLeft", "eyeSquintRight", "eyeWideLeft", "eyeWideRight", "jawForward", "jawLeft", "jawOpen", "jawRight",
-    "mouthClose", "mouthDimpleLeft", "mouthDimpleRight", "mouthFrownLeft", "mouthFrownRight", "mouthFunnel",
-    "mouthLeft", "mouthLowerDownLeft", "mouthLowerDownRight", "mouthPressLeft", "mouthPressRight", "mouthPucker",
-    "mouthRight", "mouthRollLower", "mouthRollUpper", "mouthShrugLower", "mouthShrugUpper", "mouthSmileLeft",
-    "mouthSmileRight", "mouthStretchLeft", "mouthStretchRight", "mouthUpperUpLeft", "mouthUpperUpRight",
-    "noseSneerLeft", "noseSneerRight", "tongueOut"};
+    "browDownLeft",      "browDownRight",      "browInnerUp",         "browOuterUpLeft",
+    "browOuterUpRight",  "cheekPuff",          "cheekSquintLeft",     "cheekSquintRight",
+    "eyeBlinkLeft",      "eyeBlinkRight",      "eyeLookDownLeft",     "eyeLookDownRight",
+    "eyeLookInLeft",     "eyeLookInRight",     "eyeLookOutLeft",      "eyeLookOutRight",
+    "eyeLookUpLeft",     "eyeLookUpRight",     "eyeSquintLeft",       "eyeSquintRight",
+    "eyeWideLeft",       "eyeWideRight",       "jawForward",          "jawLeft",
+    "jawOpen",           "jawRight",           "mouthClose",          "mouthDimpleLeft",
+    "mouthDimpleRight",  "mouthFrownLeft",     "mouthFrownRight",     "mouthFunnel",
+    "mouthLeft",         "mouthLowerDownLeft", "mouthLowerDownRight", "mouthPressLeft",
+    "mouthPressRight",   "mouthPucker",        "mouthRight",          "mouthRollLower",
+    "mouthRollUpper",    "mouthShrugLower",    "mouthShrugUpper",     "mouthSmileLeft",
+    "mouthSmileRight",   "mouthStretchLeft",   "mouthStretchRight",   "mouthUpperUpLeft",
+    "mouthUpperUpRight", "noseSneerLeft",      "noseSneerRight",      "tongueOut"};
 
 }  // namespace
 
-std::vector<FaceShape> make_face_shapes(const HeadMesh& head, const HeadForm& form, const FaceRegions& regions) {
+std::vector<FaceShape> make_face_shapes(const HeadMesh& head, const HeadForm& form,
+                                        const FaceRegions& regions) {
   Shapes shapes(head);
   Field jaw_open;
   add_eyes(shapes, head, form, regions);
@@ -173,7 +184,8 @@ std::vector<FaceShape> make_face_shapes(const HeadMesh& head, const HeadForm& fo
 
   std::vector<FaceShape> ordered;
   for (const char* name : kOrder)
-    ordered.push_back(*std::find_if(shapes.list.begin(), shapes.list.end(), [&](const FaceShape& s) { return s.name == name; }));
+    ordered.push_back(*std::find_if(shapes.list.begin(), shapes.list.end(),
+                                    [&](const FaceShape& s) { return s.name == name; }));
   return ordered;
 }
 

@@ -51,8 +51,9 @@ Rays make_rays(const GridForm& grid) {
   rays.azimuths.push_back(grid.columns[0].azimuth);
   for (std::size_t k = 1; k < grid.columns.size(); ++k)
     for (int s = 1; s <= grid.columns[k].steps; ++s)
-      rays.azimuths.push_back(grid.columns[k - 1].azimuth + s * (grid.columns[k].azimuth - grid.columns[k - 1].azimuth) /
-                                                                grid.columns[k].steps);
+      rays.azimuths.push_back(grid.columns[k - 1].azimuth +
+                              s * (grid.columns[k].azimuth - grid.columns[k - 1].azimuth) /
+                                  grid.columns[k].steps);
   return rays;
 }
 
@@ -69,7 +70,9 @@ Vector3d ray_direction(const KeyRow& row, double azimuth) {
   return {std::sin(a) * std::cos(elevation), std::sin(elevation), std::cos(a) * std::cos(elevation)};
 }
 
-bool inside(const Block& block, int i, int j) { return i >= block.i0 && i < block.i1 && j >= block.j0 && j < block.j1; }
+bool inside(const Block& block, int i, int j) {
+  return i >= block.i0 && i < block.i1 && j >= block.j0 && j < block.j1;
+}
 /// Strictly inside; a block that starts on the midline has no inner border there.
 bool vertex_inside(const Block& block, int i, int j) {
   return (i > block.i0 || (block.i0 == 0 && i == 0)) && i < block.i1 && j > block.j0 && j < block.j1;
@@ -90,8 +93,9 @@ void add_crown(HalfHead& half, const HeadForm& form) {
   for (int x = 0; x < width; ++x)
     for (int y = 1; y < length; ++y) {
       const double s = double(x) / width, t = double(y) / length;
-      const Vector3d across = (1 - s) * Vector3d(0, half.points[ids[width][y]].y(), half.points[ids[width][y]].z()) +
-                              s * half.points[ids[width][y]];
+      const Vector3d across =
+          (1 - s) * Vector3d(0, half.points[ids[width][y]].y(), half.points[ids[width][y]].z()) +
+          s * half.points[ids[width][y]];
       const Vector3d along = (1 - t) * half.points[ids[x][0]] + t * half.points[ids[x][length]];
       Vector3d p = (across + along) / 2 + Vector3d(0, 4, 0);
       p.y() += 3 * (1 - s * s) * 4 * t * (1 - t);
@@ -109,23 +113,26 @@ void add_crown(HalfHead& half, const HeadForm& form) {
 HalfHead make_grid(const HeadForm& form) {
   HalfHead half;
   const Rays rays = make_rays(form.grid);
-  const int columns = static_cast<int>(rays.azimuths.size()) - 1, rows = static_cast<int>(rays.rows.size()) - 1;
+  const int columns = static_cast<int>(rays.azimuths.size()) - 1,
+            rows = static_cast<int>(rays.rows.size()) - 1;
   const std::array<Block, 4> blocks = {form.grid.eye, form.grid.mouth, form.grid.nostril, form.grid.ear};
   half.grid.assign(columns + 1, std::vector<int>(rows + 1, -1));
   for (int i = 0; i <= columns; ++i)
     for (int j = 0; j <= rows; ++j) {
-      if (std::any_of(blocks.begin(), blocks.end(), [&](const Block& b) { return vertex_inside(b, i, j); })) continue;
+      if (std::any_of(blocks.begin(), blocks.end(), [&](const Block& b) { return vertex_inside(b, i, j); }))
+        continue;
       const KeyRow& row = rays.rows[j];
-      const Vector3d at =
-          form.sculpt.cast({0, row.axis_y, row.axis_z}, ray_direction(row, rays.azimuths[i]));
+      const Vector3d at = form.sculpt.cast({0, row.axis_y, row.axis_z}, ray_direction(row, rays.azimuths[i]));
       const bool on_midline = i == 0 || i == columns;
       half.grid[i][j] = half.add(at, {0.5 + rays.azimuths[i] / 360, 0.8 * j / rows},
                                  j == 0 ? HalfHead::Hold::fixed : HalfHead::Hold::free, on_midline);
     }
   for (int i = 0; i < columns; ++i)
     for (int j = 0; j < rows; ++j) {
-      if (std::any_of(blocks.begin(), blocks.end(), [&](const Block& b) { return inside(b, i, j); })) continue;
-      half.quads.push_back({half.grid[i][j], half.grid[i + 1][j], half.grid[i + 1][j + 1], half.grid[i][j + 1]});
+      if (std::any_of(blocks.begin(), blocks.end(), [&](const Block& b) { return inside(b, i, j); }))
+        continue;
+      half.quads.push_back(
+          {half.grid[i][j], half.grid[i + 1][j], half.grid[i + 1][j + 1], half.grid[i][j + 1]});
       half.cap.push_back(0);
     }
   add_crown(half, form);

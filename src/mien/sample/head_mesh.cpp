@@ -15,7 +15,8 @@ class UvWriter {
   explicit UvWriter(const HeadMesh& head) : head_(head) {
     for (std::size_t q = 0; q < head.half.quads.size(); ++q)
       if (head.half.cap[q])
-        for (int v : head.half.quads[q]) box_.extend(Vector2d(head.half.points[v].x(), head.half.points[v].z()));
+        for (int v : head.half.quads[q])
+          box_.extend(Vector2d(head.half.points[v].x(), head.half.points[v].z()));
   }
   void corner(int half_vertex, bool mirrored, bool on_cap) {
     const Vector3d& p = head_.half.points[half_vertex];
@@ -33,7 +34,8 @@ class UvWriter {
   UvSet finish() const {
     UvSet set;
     set.coordinates.resize(coordinates_.size(), 2);
-    for (std::size_t i = 0; i < coordinates_.size(); ++i) set.coordinates.row(i) = coordinates_[i].cast<float>();
+    for (std::size_t i = 0; i < coordinates_.size(); ++i)
+      set.coordinates.row(i) = coordinates_[i].cast<float>();
     set.corners = corners_;
     return set;
   }

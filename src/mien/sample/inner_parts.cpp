@@ -44,7 +44,8 @@ class MeshWriter {
     mesh.uvs.push_back(uv);
     mesh.faces = faces_;
     for (std::size_t g = 0; g < groups_.size(); ++g) {
-      groups_[g].face_end = g + 1 < groups_.size() ? groups_[g + 1].face_begin : static_cast<int>(faces_.size());
+      groups_[g].face_end =
+          g + 1 < groups_.size() ? groups_[g + 1].face_begin : static_cast<int>(faces_.size());
       groups_[g].vertex_end = static_cast<int>(points_.size());
     }
     mesh.groups = groups_;
@@ -74,7 +75,8 @@ Mesh make_eyeball(const Vector3d& centre, double radius, double iris_degrees) {
     for (int i = 0; i < around; ++i) {
       const double a = 2 * kPi * i / around, t = angle * kPi / 180;
       const Vector3d d(std::sin(t) * std::cos(a), std::sin(t) * std::sin(a), std::cos(t));
-      out.add(centre + radius * d, Vector2d(0.5 + 0.5 * t / kPi * std::cos(a), 0.5 + 0.5 * t / kPi * std::sin(a)));
+      out.add(centre + radius * d,
+              Vector2d(0.5 + 0.5 * t / kPi * std::cos(a), 0.5 + 0.5 * t / kPi * std::sin(a)));
     }
   }
   const int back = out.add(centre - Vector3d(0, 0, radius), {0.5, 0});
@@ -101,18 +103,22 @@ Mesh make_teeth(const TeethForm& form) {
   const double sign = form.height > 0 ? 1 : -1, crown = std::abs(form.height);
   MeshWriter out;
   const int section = 10;
-  // Across a tooth, from the gum's front over the biting edge to the gum's back: (out of the arch, from the edge up).
+  // Across a tooth, from the gum's front over the biting edge to the gum's back: (out of the arch, from the
+  // edge up).
   const double outward[section] = {0.55, 0.62, 0.5, 0.55, 0.42, -0.1, -0.35, -0.45, -0.5, -0.5};
-  const double height[section] = {crown + form.gum, crown + 0.25 * form.gum, crown * 0.97, crown * 0.5, 0.0,
-                                  0.02,             crown * 0.5,             crown * 0.97, crown + 0.25 * form.gum,
-                                  crown + form.gum};
+  const double height[section] = {
+      crown + form.gum, crown + 0.25 * form.gum, crown * 0.97,    crown * 0.5, 0.0, 0.02, crown * 0.5,
+      crown * 0.97,     crown + 0.25 * form.gum, crown + form.gum};
   for (int i = 0; i <= columns; ++i) {
     const double along = 2.0 * i / columns - 1;
     // The arch: half an oval, points spread evenly enough by the sine.
     const double angle = along * 0.5 * kPi * 0.98;
-    const Vector3d at(form.width * std::sin(angle), form.edge, form.front - form.depth * (1 - std::cos(angle)));
-    const Vector3d out_of_arch = Vector3d(std::sin(angle) / form.width, 0, std::cos(angle) / form.depth).normalized();
-    const double within = std::abs(2 * (double(i % per_tooth) / per_tooth) - 1);  // 1 between teeth, 0 at the middle
+    const Vector3d at(form.width * std::sin(angle), form.edge,
+                      form.front - form.depth * (1 - std::cos(angle)));
+    const Vector3d out_of_arch =
+        Vector3d(std::sin(angle) / form.width, 0, std::cos(angle) / form.depth).normalized();
+    const double within =
+        std::abs(2 * (double(i % per_tooth) / per_tooth) - 1);  // 1 between teeth, 0 at the middle
     const double groove = 1 - 0.28 * std::pow(within, 3);
     const int tooth = std::min(i / per_tooth, form.teeth - 1);
     const int from_middle = std::min(std::abs(tooth - form.teeth / 2), std::abs(tooth - form.teeth / 2 + 1));
@@ -123,7 +129,8 @@ Mesh make_teeth(const TeethForm& form) {
       const double reach = is_crown ? (1 - height[k] / crown) : 0;
       double h = height[k] + reach * crown * (0.1 + 0.8 * form.pointed) * std::pow(within, 2);
       h -= reach * longer * crown * (1 - within * within);
-      out.add(at + o * out_of_arch + Vector3d(0, sign * h, 0), Vector2d(0.5 + 0.5 * along, double(k) / (section - 1)));
+      out.add(at + o * out_of_arch + Vector3d(0, sign * h, 0),
+              Vector2d(0.5 + 0.5 * along, double(k) / (section - 1)));
     }
   }
   const bool flipped = sign > 0;
@@ -139,10 +146,12 @@ Mesh make_teeth(const TeethForm& form) {
   for (int k : {0, 1, 7, 8}) strip(k);
   // Roof of the gum and both ends.
   for (int i = 0; i < columns; ++i)
-    out.face({i * section + section - 1, (i + 1) * section + section - 1, (i + 1) * section, i * section}, flipped);
+    out.face({i * section + section - 1, (i + 1) * section + section - 1, (i + 1) * section, i * section},
+             flipped);
   for (const int end : {0, columns * section})
     for (int k = 0; k < section / 2 - 1; ++k)
-      out.face({end + k, end + k + 1, end + section - 2 - k, end + section - 1 - k}, (end == 0) != flipped ? false : true);
+      out.face({end + k, end + k + 1, end + section - 2 - k, end + section - 1 - k},
+               (end == 0) != flipped ? false : true);
   return out.finish();
 }
 
@@ -153,8 +162,8 @@ Mesh make_tongue(const TongueForm& form) {
   const int tip = out.add(form.tip + Vector3d(0, 0, 0.05), {0.5, 1});
   for (int k = 0; k < rings; ++k) {
     const double t = 1 - (k + 0.35) / (rings - 0.65);  // 1 at the tip
-    const Vector3d at = (1 - t) * (1 - t) * form.root + 2 * t * (1 - t) * (2 * form.middle - 0.5 * (form.root + form.tip)) +
-                        t * t * form.tip;
+    const Vector3d at = (1 - t) * (1 - t) * form.root +
+                        2 * t * (1 - t) * (2 * form.middle - 0.5 * (form.root + form.tip)) + t * t * form.tip;
     const double round = std::sqrt(std::max(0.0, 1 - std::pow(t, 6)));
     for (int i = 0; i < around; ++i) {
       const double a = 2 * kPi * i / around;
@@ -184,14 +193,16 @@ Mesh make_brows(const BrowForm& form, const Sculpt& sculpt) {
       const std::size_t k = std::min(static_cast<std::size_t>(at), form.line.size() - 2);
       // Through the given points by a Catmull-Rom curve.
       const auto point = [&](std::size_t j) { return form.line[std::min(j, form.line.size() - 1)]; };
-      const Vector3d p0 = k ? form.line[k - 1] : form.line[0], p1 = point(k), p2 = point(k + 1), p3 = point(k + 2);
+      const Vector3d p0 = k ? form.line[k - 1] : form.line[0], p1 = point(k), p2 = point(k + 1),
+                     p3 = point(k + 2);
       const double s = at - k;
       const Vector3d on_line = 0.5 * (2 * p1 + s * (p2 - p0) + s * s * (2 * p0 - 5 * p1 + 4 * p2 - p3) +
                                       s * s * s * (3 * p1 - p0 - 3 * p2 + p3));
       const Vector3d centre = sculpt.project(on_line, 8), normal = sculpt.normal(centre);
       const Vector3d along = (form.line.back() - form.line.front()).normalized();
       const Vector3d across = normal.cross(along).normalized();
-      const double thick = std::pow(std::max(0.0, 1 - std::pow(std::abs(2 * std::pow(t, 0.6) - 0.85) / 1.15, 2.2)), 0.6);
+      const double thick =
+          std::pow(std::max(0.0, 1 - std::pow(std::abs(2 * std::pow(t, 0.6) - 0.85) / 1.15, 2.2)), 0.6);
       const double taper = std::max(0.04, thick) * (1 - 0.35 * t);
       for (int j = 0; j < section; ++j) {
         const double a = 2 * kPi * j / section;
@@ -207,7 +218,8 @@ Mesh make_brows(const BrowForm& form, const Sculpt& sculpt) {
         out.face({id(i, j), id(i + 1, j), id(i + 1, j + 1), id(i, j + 1)}, side < 0);
     for (const int i : {0, length})
       for (int j = 0; j < section / 2 - 1; ++j)
-        out.face({id(i, j), id(i, j + 1), id(i, section - 2 - j), id(i, section - 1 - j)}, (side < 0) != (i == length));
+        out.face({id(i, j), id(i, j + 1), id(i, section - 2 - j), id(i, section - 1 - j)},
+                 (side < 0) != (i == length));
   }
   return out.finish();
 }

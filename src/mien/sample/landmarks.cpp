@@ -97,14 +97,17 @@ void add_landmarks(Character& character, const HeadMesh& head, const CharacterFo
   for (int i = 0; i < 6; ++i) out.put(37 + i, out.twin(eye[right_order[i]]));
   for (int i = 0; i < 6; ++i) out.put(43 + i, eye[i]);
 
-  const Loop &border = head.half.mouth[head.half.lip_border], &contact = head.half.mouth[head.half.lip_contact];
+  const Loop &border = head.half.mouth[head.half.lip_border],
+             &contact = head.half.mouth[head.half.lip_contact];
   const int last = static_cast<int>(border.size()) - 1, turn = last / 2;
   // The bow's peak, and a point on the way to the corner, by the slots of the loop.
-  const int peak = std::max(1, static_cast<int>(std::lround(turn * 0.16))), way = static_cast<int>(std::lround(turn * 0.5));
+  const int peak = std::max(1, static_cast<int>(std::lround(turn * 0.16))),
+            way = static_cast<int>(std::lround(turn * 0.5));
   const int outer_upper[4] = {turn, way, peak, 0};
   for (int i = 0; i < 3; ++i) out.put(49 + i, out.twin(border[outer_upper[i]]));
   for (int i = 0; i < 4; ++i) out.put(52 + i, border[outer_upper[3 - i]]);
-  const int low_near = static_cast<int>(std::lround(turn * 0.25)), low_far = static_cast<int>(std::lround(turn * 0.55));
+  const int low_near = static_cast<int>(std::lround(turn * 0.25)),
+            low_far = static_cast<int>(std::lround(turn * 0.55));
   out.put(56, border[last - low_far]);
   out.put(57, border[last - low_near]);
   out.put(58, border[last]);

@@ -49,7 +49,8 @@ void add_mouth(HalfHead& half, const HeadForm& form) {
   for (int k = 1; k <= rings; ++k) {
     const double t = std::pow(double(k) / rings, 0.85);
     for (int a = 0; a < count; ++a)
-      ring[a] = (1 - t) * half.points[border[a]] + t * (lip_border_at(mouth, a <= turn, along(a)) + Vector3d(0, 0, 0.3));
+      ring[a] = (1 - t) * half.points[border[a]] +
+                t * (lip_border_at(mouth, a <= turn, along(a)) + Vector3d(0, 0, 0.3));
     push(k < rings ? HalfHead::Hold::free : HalfHead::Hold::surface);
   }
   half.lip_border = rings;
@@ -80,8 +81,11 @@ void add_mouth(HalfHead& half, const HeadForm& form) {
   line_ring(0.35, mouth.gap);
   push(HalfHead::Hold::fixed);
   // The inner side of the lips, then the bag: ovals that run back to the throat.
-  struct Oval { double back, half_width, half_height; };
-  const Oval ovals[] = {{0.75, 0.98, 0.35}, {1.0, 1.0, 0.75}, {0.45, 1.0, 1.0}, {0.66, 0.95, 1.0}, {0.85, 0.85, 0.8}, {1.0, 0.6, 0.5}};
+  struct Oval {
+    double back, half_width, half_height;
+  };
+  const Oval ovals[] = {{0.75, 0.98, 0.35}, {1.0, 1.0, 0.75},  {0.45, 1.0, 1.0},
+                        {0.66, 0.95, 1.0},  {0.85, 0.85, 0.8}, {1.0, 0.6, 0.5}};
   for (int k = 0; k < 6; ++k) {
     const Oval& oval = ovals[k];
     for (int a = 0; a < count; ++a) {
@@ -90,9 +94,11 @@ void add_mouth(HalfHead& half, const HeadForm& form) {
       const double c = std::cos(angle), s = std::sin(angle);
       const double round = std::pow(std::abs(c), 0.8);
       // The first two follow the lips; the others are upright ovals.
-      const double z = k < 2 ? line.z() - oval.back : mouth.front - 1.2 - oval.back * (mouth.bag_depth - 1.2) -
-                                                          (k == 2 ? 0.8 : 0.3) * c * c;
-      ring[a] = {mouth.bag_width * oval.half_width * round, mouth.line + mouth.bag_height * oval.half_height * s, z};
+      const double z =
+          k < 2 ? line.z() - oval.back
+                : mouth.front - 1.2 - oval.back * (mouth.bag_depth - 1.2) - (k == 2 ? 0.8 : 0.3) * c * c;
+      ring[a] = {mouth.bag_width * oval.half_width * round,
+                 mouth.line + mouth.bag_height * oval.half_height * s, z};
       if (k == 0) ring[a].x() = line.x() * 0.97;
     }
     push(HalfHead::Hold::fixed);

@@ -25,7 +25,8 @@ Motion jaw_opening(double degrees) {
 Field carried(const HeadMesh& head, const Weights& weights, const Motion& motion) {
   Field field(head.points.size());
   for (std::size_t v = 0; v < field.size(); ++v)
-    field[v] = weights[v] > 1e-6 ? Vector3d(weights[v] * (motion.apply(head.points[v]) - head.points[v])) : Vector3d::Zero();
+    field[v] = weights[v] > 1e-6 ? Vector3d(weights[v] * (motion.apply(head.points[v]) - head.points[v]))
+                                 : Vector3d::Zero();
   return field;
 }
 
@@ -36,7 +37,8 @@ Field mouth_close(const HeadMesh& head, const FaceRegions& regions, const Field&
   const auto close = [&](int v, int partner, int slot) {
     if (slot * 2 == last) return;
     const bool upper = slot * 2 < last;
-    const Vector3d opening = upper ? Vector3d(jaw_open[partner] - jaw_open[v]) : Vector3d(jaw_open[v] - jaw_open[partner]);
+    const Vector3d opening =
+        upper ? Vector3d(jaw_open[partner] - jaw_open[v]) : Vector3d(jaw_open[v] - jaw_open[partner]);
     field[v] = regions.lips[v] * (upper ? 0.35 : -0.65) * opening;
   };
   for (const Loop& loop : head.half.mouth)
@@ -47,8 +49,8 @@ Field mouth_close(const HeadMesh& head, const FaceRegions& regions, const Field&
   return field;
 }
 
-Field lips_gathered(const HeadMesh& head, const HeadForm& form, const FaceRegions& regions, double narrow, double open,
-                    double forward) {
+Field lips_gathered(const HeadMesh& head, const HeadForm& form, const FaceRegions& regions, double narrow,
+                    double open, double forward) {
   const MouthForm& mouth = form.mouth;
   Field field(head.points.size(), Vector3d::Zero());
   const Vector3d centre(0, mouth.line, mouth.front - 0.8);
@@ -60,8 +62,9 @@ Field lips_gathered(const HeadMesh& head, const HeadForm& form, const FaceRegion
     const double across = std::min(1.0, std::abs(p.x()) / mouth.width);
     const double side = regions.jaw[v] > 0.5 ? -1 : 1;
     const double lip = std::abs(2 * regions.jaw[v] - 1);
-    field[v] = w * Vector3d(-narrow * p.x() * (0.55 + 0.45 * across), side * lip * open * (1 - across * across),
-                            forward * (0.6 + 0.4 * (1 - across)) + 0.9 * forward * across * across);
+    field[v] =
+        w * Vector3d(-narrow * p.x() * (0.55 + 0.45 * across), side * lip * open * (1 - across * across),
+                     forward * (0.6 + 0.4 * (1 - across)) + 0.9 * forward * across * across);
   }
   return field;
 }
@@ -78,7 +81,8 @@ Field lip_roll(const HeadMesh& head, const HeadForm& form, const FaceRegions& re
     const double amount = along * std::clamp(double(place.ring) / border, 0.0, 1.0);
     // From the border on, the lip turns in behind the line where it met the other.
     const double in = std::clamp(double(place.ring - border + 1) / (contact - border + 1), 0.0, 1.0);
-    const double height = upper ? form.mouth.upper_border - form.mouth.line : form.mouth.line - form.mouth.lower_border;
+    const double height =
+        upper ? form.mouth.upper_border - form.mouth.line : form.mouth.line - form.mouth.lower_border;
     const double toward = (upper ? -1 : 1) * height * (0.45 * amount * amount * (1 - 0.75 * in));
     const double behind = place.ring > contact + 3 ? 0.3 : 1;
     field[v] = behind * Vector3d(0, toward, -0.55 * amount * amount * (0.35 + 0.65 * in));

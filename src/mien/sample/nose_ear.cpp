@@ -10,7 +10,8 @@ namespace mien::sample {
 
 namespace {
 
-/// Quads (and a triangle at each end) across a closed loop, whose first vertex and the one opposite are the ends.
+/// Quads (and a triangle at each end) across a closed loop, whose first vertex and the one opposite are the
+/// ends.
 void close_loop(HalfHead& half, const Loop& loop) {
   const int count = static_cast<int>(loop.size());
   for (int a = 0; a + 1 < count / 2; ++a) {
@@ -20,14 +21,15 @@ void close_loop(HalfHead& half, const Loop& loop) {
   }
 }
 
-void push_loop(HalfHead& half, std::vector<Loop>& loops, const std::vector<Vector3d>& points, HalfHead::Hold hold,
-               double inward) {
+void push_loop(HalfHead& half, std::vector<Loop>& loops, const std::vector<Vector3d>& points,
+               HalfHead::Hold hold, double inward) {
   const Loop& border = loops.front();
   Vector2d uv_centre = Vector2d::Zero();
   for (int v : border) uv_centre += half.uvs[v] / border.size();
   Loop loop;
   for (std::size_t a = 0; a < border.size(); ++a)
-    loop.push_back(half.add(points[a], half.uvs[border[a]] + inward * (uv_centre - half.uvs[border[a]]), hold));
+    loop.push_back(
+        half.add(points[a], half.uvs[border[a]] + inward * (uv_centre - half.uvs[border[a]]), hold));
   half.bridge(loops.back(), loop, true);
   loops.push_back(loop);
 }
@@ -49,7 +51,8 @@ void add_nostril(HalfHead& half, const HeadForm& form) {
     for (int a = 0; a < count; ++a) {
       // The border starts at the septum and goes over the tip's side to the wing.
       const double angle = std::numbers::pi - 2 * std::numbers::pi * a / count;
-      ring[a] = nostril.centre + size * (std::cos(angle) * nostril.width * outer + std::sin(angle) * nostril.length * ahead) +
+      ring[a] = nostril.centre +
+                size * (std::cos(angle) * nostril.width * outer + std::sin(angle) * nostril.length * ahead) +
                 deep * inward;
     }
   };
@@ -72,11 +75,13 @@ void add_ear(HalfHead& half, const HeadForm& form) {
   // The ear's own axes: up along it, back across it, out away from the head.
   const Vector3d up(0, std::cos(ear.tilt * degree), -std::sin(ear.tilt * degree));
   const Vector3d straight_back(0, -std::sin(ear.tilt * degree), -std::cos(ear.tilt * degree));
-  const Vector3d back = std::cos(ear.flare * degree) * straight_back + std::sin(ear.flare * degree) * Vector3d::UnitX();
+  const Vector3d back =
+      std::cos(ear.flare * degree) * straight_back + std::sin(ear.flare * degree) * Vector3d::UnitX();
   const Vector3d out = up.cross(-back).normalized();
   std::vector<Vector3d> ring(count);
 
-  // A loop of the ear: the outline shrunk by `size` about a point `down` below its centre, `out_by` from the plane.
+  // A loop of the ear: the outline shrunk by `size` about a point `down` below its centre, `out_by` from the
+  // plane.
   const auto outline = [&](double angle) {
     const double c = std::cos(angle), s = std::sin(angle);
     // Wide above, narrow at the lobe; the front edge is nearly straight.
@@ -88,7 +93,9 @@ void add_ear(HalfHead& half, const HeadForm& form) {
     b += 0.8 * ear.point * tip;
     return Vector2d(b, u);
   };
-  struct Level { double size, lift, shift_back, shift_up, front_lift; };
+  struct Level {
+    double size, lift, shift_back, shift_up, front_lift;
+  };
   const auto level = [&](const Level& l) {
     for (int a = 0; a < count; ++a) {
       const double angle = std::numbers::pi - 2 * std::numbers::pi * a / count;
@@ -103,13 +110,14 @@ void add_ear(HalfHead& half, const HeadForm& form) {
   };
   for (int a = 0; a < count; ++a) {
     const double angle = std::numbers::pi - 2 * std::numbers::pi * a / count;
-    ring[a] = ear.centre + ear.root_height * std::sin(angle) * up + ear.root_width * std::cos(angle) * straight_back;
+    ring[a] = ear.centre + ear.root_height * std::sin(angle) * up +
+              ear.root_width * std::cos(angle) * straight_back;
   }
   push_loop(half, half.ear, ring, HalfHead::Hold::surface, 0.15);
   const double s = ear.stand, r = ear.rim;
   const Level levels[] = {
-      {0.80, 0.45 * s, 0.15, 0, 0.3 * s}, {0.96, s - 0.5 * r, 0, 0, 0}, {1.00, s, 0, 0, 0},
-      {0.97, s + 0.5 * r, 0, 0, 0},       {0.88, s + 0.45 * r, 0, 0, 0}, {0.80, s - 0.1 * r, 0, 0, 0.2},
+      {0.80, 0.45 * s, 0.15, 0, 0.3 * s}, {0.96, s - 0.5 * r, 0, 0, 0},        {1.00, s, 0, 0, 0},
+      {0.97, s + 0.5 * r, 0, 0, 0},       {0.88, s + 0.45 * r, 0, 0, 0},       {0.80, s - 0.1 * r, 0, 0, 0.2},
       {0.68, s - 0.1 * r, 0, 0, 0.2},     {0.56, s + 0.25 * r, 0, -0.05, 0.0}, {0.44, s - 0.2, 0, -0.1, 0},
       {0.32, s - 0.75, -0.05, -0.2, 0},   {0.14, s - 0.9, -0.2, -0.2, 0}};
   double inward = 0.2;

@@ -1,5 +1,5 @@
-// Joints and skin weights: the head's joint has everything; neck and jaw take their share, then small joints of the
-// face take theirs from whoever holds it.
+// Joints and skin weights: the head's joint has everything; neck and jaw take their share, then small joints
+// of the face take theirs from whoever holds it.
 
 #include <algorithm>
 #include <cmath>
@@ -82,7 +82,8 @@ double lid_share(const HeadMesh& head, const LoopPlace& place, bool upper) {
   // Both lids share the corners.
   const double angle = std::sin(2 * 3.14159265358979 * place.slot / count);
   const double side = std::clamp(0.5 + 2.5 * (upper ? angle : -angle), 0.0, 1.0);
-  return std::pow(out, 2.0) * side * std::clamp(3.0 * std::abs(std::sin(3.14159265358979 * place.slot / turn)), 0.0, 1.0);
+  return std::pow(out, 2.0) * side *
+         std::clamp(3.0 * std::abs(std::sin(3.14159265358979 * place.slot / turn)), 0.0, 1.0);
 }
 
 Rows skin_rows(const HeadMesh& head, const FaceRegions& regions, const std::vector<Joint>& joints) {
@@ -156,7 +157,8 @@ void add_rig(BuiltCharacter& built, const CharacterForm& form, const FaceRegions
   const int first = static_cast<int>(character.nodes.size());
   const auto joint_named = [&](const std::string& name) {
     for (std::size_t j = 0; j < joints.size(); ++j)
-      if (character.nodes.size() > first + j && character.nodes[first + j].name == name) return static_cast<int>(j);
+      if (character.nodes.size() > first + j && character.nodes[first + j].name == name)
+        return static_cast<int>(j);
     return -1;
   };
   for (const Joint& joint : joints) {
@@ -191,7 +193,8 @@ void add_rig(BuiltCharacter& built, const CharacterForm& form, const FaceRegions
   bind(upper_teeth_part, whole(upper_teeth_part, "head"));
   bind(lower_teeth_part, whole(lower_teeth_part, "jaw"));
   bind(brows_part, followed(face, anchors_of(character.parts[brows_part].mesh, built.head, {})));
-  bind(lashes_part, followed(face, anchors_of(character.parts[lashes_part].mesh, built.head, built.lash_anchors)));
+  bind(lashes_part,
+       followed(face, anchors_of(character.parts[lashes_part].mesh, built.head, built.lash_anchors)));
 
   Rows tongue = whole(tongue_part, "jaw");
   const Mesh& mesh = character.parts[tongue_part].mesh;

@@ -27,7 +27,9 @@ Character make_human() {
 
 }  // namespace
 
-std::span<const SampleInfo> sample_list() { return kSamples; }
+std::span<const SampleInfo> sample_list() {
+  return kSamples;
+}
 
 Character make_sample(std::string_view name) {
   if (name == "human") return make_human();

@@ -1,5 +1,5 @@
-// Blending: the quadratic smooth minimum, which bulges a union by at most blend / 4 where two lumps meet and leaves
-// everything farther than `blend` from the seam alone.
+// Blending: the quadratic smooth minimum, which bulges a union by at most blend / 4 where two lumps meet and
+// leaves everything farther than `blend` from the seam alone.
 
 #include "mien/sample/detail/sculpt.h"
 
@@ -12,10 +12,10 @@ namespace mien::sample {
 
 Blob& Blob::turned(double x, double y, double z) {
   const double degree = std::numbers::pi / 180;
-  const Eigen::Matrix3d rotation = (Eigen::AngleAxisd(z * degree, Vector3d::UnitZ()) *
-                                    Eigen::AngleAxisd(y * degree, Vector3d::UnitY()) *
-                                    Eigen::AngleAxisd(x * degree, Vector3d::UnitX()))
-                                       .toRotationMatrix();
+  const Eigen::Matrix3d rotation =
+      (Eigen::AngleAxisd(z * degree, Vector3d::UnitZ()) * Eigen::AngleAxisd(y * degree, Vector3d::UnitY()) *
+       Eigen::AngleAxisd(x * degree, Vector3d::UnitX()))
+          .toRotationMatrix();
   turn = rotation.transpose();
   return *this;
 }

@@ -7,8 +7,8 @@
 
 namespace mien::sample {
 
-/// Where the 68 landmarks are, roughly, on the left half; each goes to the closest vertex of the skin. Eyes and mouth
-/// need none: their landmarks are places in their loops.
+/// Where the 68 landmarks are, roughly, on the left half; each goes to the closest vertex of the skin. Eyes
+/// and mouth need none: their landmarks are places in their loops.
 struct LandmarkForm {
   std::vector<Vector3d> jaw;   ///< 9: from the chin to the ear
   std::vector<Vector3d> brow;  ///< 5: from the inner to the outer end
@@ -21,9 +21,9 @@ struct CharacterForm {
   HeadForm head;
   TeethForm upper_teeth, lower_teeth;
   TongueForm tongue;
-  BrowForm brows;        ///< no line: none
-  double lashes = 0;     ///< their length; 0: none
-  double iris = 25;      ///< half the iris' angle seen from the eye's centre, degrees
+  BrowForm brows;     ///< no line: none
+  double lashes = 0;  ///< their length; 0: none
+  double iris = 25;   ///< half the iris' angle seen from the eye's centre, degrees
   LandmarkForm landmarks;
   std::vector<Material> materials;  ///< by MaterialId
 };
@@ -32,8 +32,16 @@ CharacterForm human_character();
 CharacterForm cartoon_character();
 CharacterForm creature_character();
 
-enum PartId { face_part, left_eye_part, right_eye_part, upper_teeth_part, lower_teeth_part, tongue_part, brows_part,
-              lashes_part };
+enum PartId {
+  face_part,
+  left_eye_part,
+  right_eye_part,
+  upper_teeth_part,
+  lower_teeth_part,
+  tongue_part,
+  brows_part,
+  lashes_part
+};
 
 struct BuiltCharacter {
   HeadMesh head;
@@ -46,7 +54,8 @@ BuiltCharacter build_character(const CharacterForm& form);
 /// The landmarks and curves, on part `face_part`.
 void add_landmarks(Character& character, const HeadMesh& head, const CharacterForm& form);
 
-/// For each vertex of a part that rides on the skin, the skin vertices (all or the given anchors) that carry it.
+/// For each vertex of a part that rides on the skin, the skin vertices (all or the given anchors) that carry
+/// it.
 using Anchors = std::vector<std::vector<std::pair<int, double>>>;
 Anchors anchors_of(const Mesh& mesh, const HeadMesh& head, const std::vector<int>& given);
 

@@ -8,8 +8,8 @@
 
 namespace mien::sample {
 
-using Weights = std::vector<double>;   ///< one a vertex of the whole skin
-using Field = std::vector<Vector3d>;   ///< one displacement a vertex of the whole skin
+using Weights = std::vector<double>;  ///< one a vertex of the whole skin
+using Field = std::vector<Vector3d>;  ///< one displacement a vertex of the whole skin
 
 /// A vertex' place in the loops around an opening.
 struct LoopPlace {
@@ -18,8 +18,8 @@ struct LoopPlace {
 };
 
 struct FaceRegions {
-  std::vector<LoopPlace> left_eye, mouth;  ///< #V each; a right-hand vertex has its twin's place in the mouth, and
-                                           ///< none in the left eye
+  std::vector<LoopPlace> left_eye, mouth;  ///< #V each; a right-hand vertex has its twin's place in the
+                                           ///< mouth, and none in the left eye
   Weights jaw;   ///< 1 on what the jaw carries, 0 on the skull; between the lips it jumps
   Weights neck;  ///< 1 on the neck, 0 on the head
   Weights lips;  ///< 1 on the red of the lips and inside, fading out on the face
@@ -28,7 +28,8 @@ struct FaceRegions {
 FaceRegions make_regions(const HeadMesh& head, const HeadForm& form);
 
 /// Spreads the values that `seed` fixes over the other vertices of the half head, then to the right side.
-Weights diffuse(const HeadMesh& head, const std::function<std::optional<double>(int)>& seed, int rounds = 400);
+Weights diffuse(const HeadMesh& head, const std::function<std::optional<double>(int)>& seed,
+                int rounds = 400);
 
 /// 1 at the centre, 0 beyond the ellipsoid of these radii, smooth between.
 double soft(const Vector3d& p, const Vector3d& centre, const Vector3d& radii);

@@ -8,7 +8,8 @@
 
 namespace mien::sample {
 
-/// A small rigid motion, taken along in full by a part inside the head: p -> centre + R(axis, degrees)(p - centre) + move.
+/// A small rigid motion, taken along in full by a part inside the head: p -> centre + R(axis, degrees)(p -
+/// centre) + move.
 struct Motion {
   Vector3d centre = Vector3d::Zero();
   Vector3d axis = Vector3d::UnitX();
@@ -26,10 +27,12 @@ struct FaceShape {
 };
 
 /// All 52, in ARKit's order.
-std::vector<FaceShape> make_face_shapes(const HeadMesh& head, const HeadForm& form, const FaceRegions& regions);
+std::vector<FaceShape> make_face_shapes(const HeadMesh& head, const HeadForm& form,
+                                        const FaceRegions& regions);
 
 /// Where the lids' and the eye's shapes are made.
-Field lid_field(const HeadMesh& head, const HeadForm& form, const FaceRegions& regions, double upper, double lower);
+Field lid_field(const HeadMesh& head, const HeadForm& form, const FaceRegions& regions, double upper,
+                double lower);
 Field blink_field(const HeadMesh& head, const HeadForm& form, const FaceRegions& regions);
 
 /// Skin displacement under a motion, in proportion to `weights`.
@@ -40,7 +43,8 @@ Motion jaw_opening(double degrees);
 
 // Shapes of the lips that need more than pulls.
 Field mouth_close(const HeadMesh& head, const FaceRegions& regions, const Field& jaw_open);
-Field lips_gathered(const HeadMesh& head, const HeadForm& form, const FaceRegions& regions, double narrow, double open, double forward);
+Field lips_gathered(const HeadMesh& head, const HeadForm& form, const FaceRegions& regions, double narrow,
+                    double open, double forward);
 Field lip_roll(const HeadMesh& head, const HeadForm& form, const FaceRegions& regions, bool upper);
 Field lip_press(const HeadMesh& head, const HeadForm& form, const FaceRegions& regions);
 

@@ -7,8 +7,18 @@
 namespace mien::sample {
 
 /// Indices into the materials of every built-in character.
-enum MaterialId { skin_material, white_material, iris_material, pupil_material, tooth_material, gum_material,
-                  tongue_material, hair_material, mouth_material, lip_material };
+enum MaterialId {
+  skin_material,
+  white_material,
+  iris_material,
+  pupil_material,
+  tooth_material,
+  gum_material,
+  tongue_material,
+  hair_material,
+  mouth_material,
+  lip_material
+};
 
 /// One eyeball around its centre, looking along +Z; groups: white, iris, pupil.
 Mesh make_eyeball(const Vector3d& centre, double radius, double iris_degrees);
@@ -21,8 +31,8 @@ struct TeethForm {
   double gum = 0.7;                  ///< height of the gum over the crowns
   double thickness = 0.55;
   int teeth = 14;
-  double pointed = 0;                ///< 0: blunt; 1: each tooth ends in a point
-  double fang = 0;                   ///< how much longer the canines are
+  double pointed = 0;  ///< 0: blunt; 1: each tooth ends in a point
+  double fang = 0;     ///< how much longer the canines are
 };
 /// A row of teeth in its gum; groups: teeth, gum.
 Mesh make_teeth(const TeethForm& form);

@@ -15,16 +15,22 @@ struct Blob {
   enum class Kind { ellipsoid, capsule };
   enum class Op { add, cut };
   Kind kind = Kind::ellipsoid;
-  Vector3d a = Vector3d::Zero();  ///< centre of the ellipsoid, first end of the capsule
-  Vector3d b = Vector3d::Zero();  ///< radii of the ellipsoid, second end of the capsule
-  double radius_a = 1, radius_b = 1;  ///< of the capsule at its ends
+  Vector3d a = Vector3d::Zero();                       ///< centre of the ellipsoid, first end of the capsule
+  Vector3d b = Vector3d::Zero();                       ///< radii of the ellipsoid, second end of the capsule
+  double radius_a = 1, radius_b = 1;                   ///< of the capsule at its ends
   Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();  ///< model space to the ellipsoid's axes
-  double blend = 1;                   ///< how far the blend reaches
+  double blend = 1;                                    ///< how far the blend reaches
   Op op = Op::add;
   bool pair = false;  ///< applied at -x as well
 
-  Blob& cut() { op = Op::cut; return *this; }
-  Blob& both() { pair = true; return *this; }
+  Blob& cut() {
+    op = Op::cut;
+    return *this;
+  }
+  Blob& both() {
+    pair = true;
+    return *this;
+  }
   /// Turns the ellipsoid about x, then y, then z (degrees).
   Blob& turned(double x, double y, double z);
 };
@@ -32,8 +38,8 @@ struct Blob {
 Blob ellipsoid(const Vector3d& centre, const Vector3d& radii, double blend);
 Blob capsule(const Vector3d& a, double radius_a, const Vector3d& b, double radius_b, double blend);
 
-/// A head's form. `distance` is negative inside; it is a bound rather than the exact distance, with a gradient of
-/// length near one close to the surface.
+/// A head's form. `distance` is negative inside; it is a bound rather than the exact distance, with a
+/// gradient of length near one close to the surface.
 class Sculpt {
  public:
   Sculpt() = default;
