@@ -7,8 +7,6 @@
 #include "mien/core/error.h"
 
 namespace mien::detail {
-namespace {
-
 /// Cairo refuses text that is not UTF-8 and is then dead for good: names from files are made safe first.
 std::string valid_utf8(std::string_view text) {
   std::string valid;
@@ -33,8 +31,6 @@ std::string valid_utf8(std::string_view text) {
   }
   return valid;
 }
-
-}  // namespace
 
 Surface::Surface(const Picture& picture)
     : surface_(cairo_image_surface_create(CAIRO_FORMAT_RGB24, picture.width, picture.height)) {
@@ -101,11 +97,13 @@ void Canvas::line(const std::vector<Eigen::Vector2d>& points, double width, Colo
   cairo_set_line_width(cairo_, width);
   cairo_set_line_join(cairo_, CAIRO_LINE_JOIN_ROUND);
   cairo_set_line_cap(cairo_, CAIRO_LINE_CAP_ROUND);
+  cairo_new_path(cairo_);
   for (const Eigen::Vector2d& p : points) cairo_line_to(cairo_, p.x(), p.y());
   cairo_stroke(cairo_);
 }
 
 void Canvas::dot(Eigen::Vector2d centre, double radius, Color color) {
+  cairo_new_path(cairo_);
   cairo_arc(cairo_, centre.x(), centre.y(), radius, 0, 2 * std::numbers::pi);
   cairo_set_source_rgb(cairo_, color.r, color.g, color.b);
   cairo_fill_preserve(cairo_);
@@ -147,6 +145,7 @@ void Canvas::text(std::string_view text, Eigen::Vector2d at, const TextStyle& st
   cairo_move_to(cairo_, -shift, 0);
   cairo_set_source_rgb(cairo_, style.color.r, style.color.g, style.color.b);
   cairo_show_text(cairo_, valid_utf8(text).c_str());
+  cairo_new_path(cairo_);
   cairo_restore(cairo_);
 }
 

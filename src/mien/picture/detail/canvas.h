@@ -4,6 +4,7 @@
 #include <cairo.h>
 
 #include <Eigen/Core>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -35,6 +36,9 @@ struct TextStyle {
   bool bold = false;
   double turn = 0;  ///< radians, counter-clockwise
 };
+
+/// The text with '?' for every byte that is not UTF-8 or is a control character.
+std::string valid_utf8(std::string_view text);
 
 /// Draws on a picture; `finish` writes the pixels back into it. Pixels, origin at the upper left, y down.
 class Canvas {
