@@ -24,4 +24,4 @@ endforeach()
 configure_file(${PROJECT_SOURCE_DIR}/cmake/mien-config.cmake.in ${PROJECT_BINARY_DIR}/package/mien-config.cmake @ONLY)
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/package/mien-config-version.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/package/mien-config.cmake ${PROJECT_BINARY_DIR}/package/mien-config-version.cmake
-  DESTINATION ${package_folder} COMPONENT library)
+  ${PROJECT_SOURCE_DIR}/cmake/FindCHOLMOD.cmake DESTINATION ${package_folder} COMPONENT library)

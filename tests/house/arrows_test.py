@@ -7,7 +7,7 @@ import unittest
 
 import house
 
-# Which library a bracketed include with a folder belongs to, as the LIBRARIES of mien_room name it. Eigen is free to all.
+# Which library a bracketed include belongs to, as the LIBRARIES of mien_room name it. Eigen is free to all.
 LIBRARY_OF = {
     "embree3": "embree",
     "tbb": "TBB::tbb",
@@ -16,6 +16,7 @@ LIBRARY_OF = {
     "fmt": "fmt::fmt",
     "cairo": "PkgConfig::cairo",
     "meshoptimizer.h": "meshoptimizer::meshoptimizer",
+    "cholmod.h": "CHOLMOD::CHOLMOD",
     "cairo.h": "PkgConfig::cairo",
     "CLI": "CLI11::CLI11",
 }
