@@ -1,0 +1,343 @@
+#include "mien/character/validate.h"
+
+#include <algorithm>
+#include <cmath>
+#include <unordered_set>
+
+namespace mien {
+namespace {
+
+std::string text_of(long long number) {
+  return std::to_string(number);
+}
+
+class Validator {
+ public:
+  explicit Validator(const Character& character) : character_(character) {}
+  std::vector<Problem> run();
+
+ private:
+  void check_nodes();
+  void check_skins();
+  void check_mesh(const Part& part, const std::string& place);
+  void check_faces(const Mesh& mesh, const std::string& place);
+  void check_uvs(const Mesh& mesh, const std::string& place);
+  void check_groups(const Mesh& mesh, const std::string& place);
+  void check_skin_weights(const Part& part, const std::string& place);
+  void check_shapes();
+  void check_delta(const PartDelta& delta, const std::string& place);
+  void check_clips();
+  void check_channel(const Channel& channel, const std::string& place);
+  void check_channel_target(const Channel& channel, const std::string& place);
+  void check_landmarks();
+  void check_point(const SurfacePoint& point, const std::string& place);
+  void add(std::string place, std::string text, std::string remedy) {
+    problems_.push_back({std::move(place), std::move(text), std::move(remedy)});
+  }
+  /// Whether `index` is in [low, count); adds a problem otherwise.
+  bool in_range(long long index, long long low, std::size_t count, const std::string& place,
+                const char* what);
+  template <typename Matrix>
+  void check_finite(const Matrix& rows, const std::string& place, const char* what);
+  template <typename Matrix>
+  void check_rows(const Matrix& rows, Eigen::Index wanted, const std::string& place, const char* what);
+
+  const Character& character_;
+  std::vector<Problem> problems_;
+};
+
+bool Validator::in_range(long long index, long long low, std::size_t count, const std::string& place,
+                         const char* what) {
+  if (index >= low && index < static_cast<long long>(count)) return true;
+  add(place, std::string("names ") + what + " " + text_of(index), "there are " + text_of(count));
+  return false;
+}
+
+template <typename Matrix>
+void Validator::check_finite(const Matrix& rows, const std::string& place, const char* what) {
+  if (rows.allFinite()) return;
+  Eigen::Index row = 0;
+  while (rows.row(row).allFinite()) ++row;
+  add(place + ": " + what + " " + text_of(row), "is not finite", "give finite numbers");
+}
+
+template <typename Matrix>
+void Validator::check_rows(const Matrix& rows, Eigen::Index wanted, const std::string& place,
+                           const char* what) {
+  if (rows.rows() != 0 && rows.rows() != wanted)
+    add(place, "has " + text_of(rows.rows()) + " " + what, "there are " + text_of(wanted) + " vertices");
+  else
+    check_finite(rows, place, what);
+}
+
+void Validator::check_nodes() {
+  const std::vector<Node>& nodes = character_.nodes;
+  bool parents_known = true;
+  for (std::size_t n = 0; n < nodes.size(); ++n) {
+    const Node& node = nodes[n];
+    const std::string place = "node " + (node.name.empty() ? text_of(n) : node.name);
+    parents_known = in_range(node.parent, -1, nodes.size(), place, "parent") && parents_known;
+    if (!node.rest.translation.allFinite() || !node.rest.scale.allFinite() ||
+        !node.rest.rotation.coeffs().allFinite() || !node.matrix.allFinite())
+      add(place, "has a transform that is not finite", "give finite numbers");
+    else if (std::abs(node.rest.rotation.norm() - 1) > 1e-3)
+      add(place, "has a rotation that is not unit", "normalise it");
+  }
+  if (!parents_known) return;
+  std::vector<int> walk(nodes.size(), -1);
+  for (int start = 0; start < static_cast<int>(nodes.size()); ++start)
+    for (int at = start; at >= 0 && walk[at] != start; at = nodes[at].parent) {
+      if (walk[at] >= 0) break;
+      walk[at] = start;
+      if (nodes[at].parent >= 0 && walk[nodes[at].parent] == start) {
+        add("node " + (nodes[at].name.empty() ? text_of(at) : nodes[at].name), "is its own ancestor",
+            "nodes must form trees");
+        return;
+      }
+    }
+}
+
+void Validator::check_skins() {
+  for (std::size_t s = 0; s < character_.skins.size(); ++s) {
+    const Skin& skin = character_.skins[s];
+    const std::string place = "skin " + (skin.name.empty() ? text_of(s) : skin.name);
+    if (skin.joints.empty()) add(place, "has no joints", "a skin needs joints");
+    std::unordered_set<int> seen;
+    for (const int joint : skin.joints) {
+      if (!in_range(joint, 0, character_.nodes.size(), place, "node")) break;
+      if (!seen.insert(joint).second) {
+        add(place, "lists node " + text_of(joint) + " twice", "list each joint once");
+        break;
+      }
+    }
+    in_range(skin.skeleton, -1, character_.nodes.size(), place, "node");
+    if (skin.inverse_bind.size() != skin.joints.size())
+      add(place, "has " + text_of(skin.inverse_bind.size()) + " inverse bind matrices",
+          "there are " + text_of(skin.joints.size()) + " joints");
+    for (const Eigen::Matrix4d& matrix : skin.inverse_bind)
+      if (!matrix.allFinite()) {
+        add(place, "has an inverse bind matrix that is not finite", "give finite numbers");
+        break;
+      }
+  }
+}
+
+void Validator::check_faces(const Mesh& mesh, const std::string& place) {
+  for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
+    const auto here = [&] { return place + ": face " + text_of(f); };
+    if (mesh.faces[f].size() < 3) return add(here(), "has fewer than three corners", "give three or more");
+    for (const int v : mesh.faces[f])
+      if (v < 0 || v >= mesh.positions.rows()) {
+        in_range(v, 0, mesh.vertex_count(), here(), "vertex");
+        return;
+      }
+  }
+}
+
+void Validator::check_uvs(const Mesh& mesh, const std::string& place) {
+  for (std::size_t set = 0; set < mesh.uvs.size(); ++set) {
+    const UvSet& uv = mesh.uvs[set];
+    const std::string here = place + ": UV set " + text_of(set);
+    check_finite(uv.coordinates, here, "coordinate");
+    if (uv.corners.empty()) {
+      if (uv.coordinates.rows() != mesh.positions.rows() && !mesh.faces.empty())
+        add(here, "has " + text_of(uv.coordinates.rows()) + " coordinates",
+            "there are " + text_of(mesh.positions.rows()) + " vertices");
+      continue;
+    }
+    if (uv.corners.size() != mesh.faces.corner_count())
+      add(here, "has " + text_of(uv.corners.size()) + " corners",
+          "the faces have " + text_of(mesh.faces.corner_count()));
+    for (const int corner : uv.corners)
+      if (!in_range(corner, -1, static_cast<std::size_t>(uv.coordinates.rows()), here, "coordinate")) break;
+  }
+}
+
+void Validator::check_groups(const Mesh& mesh, const std::string& place) {
+  int next = 0;
+  for (std::size_t g = 0; g < mesh.groups.size(); ++g) {
+    const FaceGroup& group = mesh.groups[g];
+    const std::string here = place + ": group " + text_of(g);
+    if (group.face_begin != next || group.face_end < group.face_begin)
+      return add(here, "has faces " + text_of(group.face_begin) + " to " + text_of(group.face_end),
+                 "groups follow one another from face " + text_of(next));
+    next = group.face_end;
+    if (!in_range(group.material, -1, character_.appearance.materials.size(), here, "material")) return;
+  }
+  if (!mesh.groups.empty() && next != static_cast<int>(mesh.faces.size()))
+    add(place, "has groups up to face " + text_of(next),
+        "they must cover " + text_of(mesh.faces.size()) + " faces");
+}
+
+void Validator::check_skin_weights(const Part& part, const std::string& place) {
+  const SkinWeights& skin = part.skin_weights;
+  if (skin.empty() || part.skin < 0 || part.skin >= static_cast<int>(character_.skins.size())) return;
+  if (skin.offsets.size() != part.mesh.vertex_count() + 1 || skin.offsets.front() != 0 ||
+      static_cast<std::size_t>(skin.offsets.back()) != skin.joints.size() ||
+      skin.weights.size() != skin.joints.size() || !std::is_sorted(skin.offsets.begin(), skin.offsets.end()))
+    return add(place, "has skin weights whose counts do not fit together", "give each vertex its influences");
+  const std::size_t joint_count = character_.skins[part.skin].joints.size();
+  for (std::size_t v = 0; v < part.mesh.vertex_count(); ++v) {
+    double sum = 0;
+    const auto here = [&] { return place + ": vertex " + text_of(v); };
+    for (int i = skin.offsets[v]; i < skin.offsets[v + 1]; ++i) {
+      if (skin.joints[i] < 0 || skin.joints[i] >= static_cast<int>(joint_count)) {
+        in_range(skin.joints[i], 0, joint_count, here(), "joint");
+        return;
+      }
+      if (!(skin.weights[i] >= 0) || !std::isfinite(skin.weights[i]))
+        return add(here(), "has a skin weight that is negative or not finite", "give weights in [0, 1]");
+      sum += skin.weights[i];
+    }
+    if (std::abs(sum - 1) > 1e-3)
+      return add(here(), "has skin weights that sum to " + std::to_string(sum), "they sum to 1");
+  }
+}
+
+void Validator::check_mesh(const Part& part, const std::string& place) {
+  const Mesh& mesh = part.mesh;
+  const Eigen::Index count = mesh.positions.rows();
+  if (count == 0) add(place, "has no vertices", "leave the part out");
+  check_finite(mesh.positions, place, "vertex");
+  check_rows(mesh.normals, count, place, "normals");
+  check_rows(mesh.tangents, count, place, "tangents");
+  for (const Points4& colors : mesh.colors) check_rows(colors, count, place, "colours");
+  check_faces(mesh, place);
+  check_uvs(mesh, place);
+  check_groups(mesh, place);
+  in_range(part.node, -1, character_.nodes.size(), place, "node");
+  in_range(part.skin, -1, character_.skins.size(), place, "skin");
+  check_skin_weights(part, place);
+}
+
+void Validator::check_delta(const PartDelta& delta, const std::string& place) {
+  if (!in_range(delta.part, 0, character_.parts.size(), place, "part")) return;
+  const auto rows = static_cast<Eigen::Index>(delta.vertices.size());
+  if (delta.deltas.rows() != rows ||
+      (delta.normal_deltas.rows() != 0 && delta.normal_deltas.rows() != rows) ||
+      (delta.tangent_deltas.rows() != 0 && delta.tangent_deltas.rows() != rows))
+    add(place, "has arrays of unequal length", "give one row a vertex");
+  for (std::size_t k = 0; k < delta.vertices.size(); ++k) {
+    if (k > 0 && delta.vertices[k] <= delta.vertices[k - 1]) {
+      add(place, "has vertices that do not ascend", "sort them and name each once");
+      break;
+    }
+    if (!in_range(delta.vertices[k], 0, character_.parts[delta.part].mesh.vertex_count(), place, "vertex"))
+      break;
+  }
+  check_finite(delta.deltas, place, "displacement");
+  check_finite(delta.normal_deltas, place, "normal displacement");
+  check_finite(delta.tangent_deltas, place, "tangent displacement");
+}
+
+void Validator::check_shapes() {
+  std::unordered_set<std::string> names;
+  for (const Shape& shape : character_.shapes) {
+    const std::string place = "shape " + shape.name;
+    if (!names.insert(shape.name).second)
+      add(place, "has the name of another shape", "give each its own name");
+    if (!std::isfinite(shape.rest))
+      add(place, "has a rest weight that is not finite", "give a finite number");
+    int before = -1;
+    for (const PartDelta& delta : shape.parts) {
+      if (delta.part <= before) add(place, "lists its parts out of order", "list each part once, ascending");
+      before = delta.part;
+      check_delta(delta, place);
+    }
+  }
+}
+
+void Validator::check_channel_target(const Channel& channel, const std::string& place) {
+  if (channel.property != Channel::Property::shape_weight) {
+    in_range(channel.node, 0, character_.nodes.size(), place, "node");
+    return;
+  }
+  in_range(channel.shape, 0, character_.shapes.size(), place, "shape");
+  in_range(channel.part, -1, character_.parts.size(), place, "part");
+}
+
+void Validator::check_channel(const Channel& channel, const std::string& place) {
+  check_channel_target(channel, place);
+  const bool cubic = channel.interpolation == Interpolation::cubic_spline;
+  const std::size_t wanted = channel.times.size() * channel.width() * (cubic ? 3 : 1);
+  if (channel.times.empty()) return add(place, "has no keys", "leave the channel out");
+  if (channel.values.size() != wanted)
+    return add(place, "has " + text_of(channel.values.size()) + " values", text_of(wanted) + " are needed");
+  for (std::size_t k = 0; k < channel.times.size(); ++k)
+    if (!std::isfinite(channel.times[k]) || channel.times[k] < 0 ||
+        (k > 0 && channel.times[k] <= channel.times[k - 1]))
+      return add(place + ": key " + text_of(k), "is not later than the one before it",
+                 "times must ascend from 0");
+  for (const float value : channel.values)
+    if (!std::isfinite(value)) return add(place, "has a value that is not finite", "give finite numbers");
+  if (channel.property != Channel::Property::rotation) return;
+  for (std::size_t k = 0; k < channel.times.size(); ++k) {
+    const float* q = channel.values.data() + 4 * (cubic ? 3 * k + 1 : k);
+    if (std::abs(Eigen::Vector4f(q[0], q[1], q[2], q[3]).norm() - 1) > 1e-2f)
+      return add(place + ": key " + text_of(k), "has a rotation that is not unit", "normalise it");
+  }
+}
+
+void Validator::check_clips() {
+  for (std::size_t c = 0; c < character_.clips.size(); ++c) {
+    const Clip& clip = character_.clips[c];
+    for (std::size_t k = 0; k < clip.channels.size(); ++k)
+      check_channel(clip.channels[k],
+                    "clip " + (clip.name.empty() ? text_of(c) : clip.name) + ": channel " + text_of(k));
+  }
+}
+
+void Validator::check_point(const SurfacePoint& point, const std::string& place) {
+  if (!in_range(point.part, 0, character_.parts.size(), place, "part")) return;
+  const Mesh& mesh = character_.parts[point.part].mesh;
+  if (point.face < 0) {
+    in_range(point.vertex, 0, mesh.vertex_count(), place, "vertex");
+    return;
+  }
+  if (!in_range(point.face, 0, mesh.faces.size(), place, "face")) return;
+  for (const int corner : point.corners) in_range(corner, 0, mesh.faces[point.face].size(), place, "corner");
+  if (!point.barycentric.allFinite() || std::abs(point.barycentric.sum() - 1) > 1e-3)
+    add(place, "has barycentric weights that do not sum to one", "give three weights of sum 1");
+}
+
+void Validator::check_landmarks() {
+  std::unordered_set<std::string> names;
+  for (const Landmark& landmark : character_.landmarks) {
+    const std::string place = "landmark " + landmark.name;
+    if (!names.insert(landmark.name).second)
+      add(place, "has the name of another landmark", "give each its own name");
+    check_point(landmark.at, place);
+  }
+  for (const LandmarkCurve& curve : character_.curves) {
+    const std::string place = "curve " + curve.name;
+    if (curve.points.size() < 2) add(place, "has fewer than two points", "give two or more");
+    if (curve.count < 2) add(place, "has a count of " + text_of(curve.count), "give 2 or more");
+    for (const SurfacePoint& point : curve.points) check_point(point, place);
+  }
+}
+
+std::vector<Problem> Validator::run() {
+  check_nodes();
+  check_skins();
+  for (std::size_t p = 0; p < character_.parts.size(); ++p) {
+    const Part& part = character_.parts[p];
+    check_mesh(part, "part " + (part.name.empty() ? text_of(p) : part.name));
+  }
+  check_shapes();
+  check_clips();
+  check_landmarks();
+  return std::move(problems_);
+}
+
+}  // namespace
+
+std::vector<Problem> validate(const Character& character) {
+  return Validator(character).run();
+}
+
+void require_valid(const Character& character) {
+  const std::vector<Problem> problems = validate(character);
+  if (!problems.empty()) throw problems.front().error();
+}
+
+}  // namespace mien

@@ -1,0 +1,35 @@
+#pragma once
+/// The steps of reading a glTF into a Character; read_gltf runs them in this order.
+
+#include <vector>
+
+#include "mien/character/character.h"
+#include "mien/io/detail/gltf_document.h"
+
+namespace mien::detail {
+
+/// What the later steps need to know about a part that the Character does not say.
+struct PartSource {
+  int mesh = -1;
+  std::vector<int> shapes;  ///< per morph target: index into Character::shapes
+};
+
+void read_nodes(GltfDocument& document, Character& character);
+void read_skins(GltfDocument& document, Character& character);
+void read_appearance(GltfDocument& document, Character& character);
+std::vector<PartSource> read_parts(GltfDocument& document, Character& character);
+void read_clips(GltfDocument& document, const std::vector<PartSource>& sources, Character& character);
+/// N-gons, seams, groups, landmarks and curves from the vendor extension.
+void read_vendor(GltfDocument& document, const std::vector<PartSource>& sources, Character& character);
+
+/// One mesh as the file holds it: its surface, its influences and its morph targets.
+struct MeshData {
+  Mesh mesh;
+  SkinWeights skin_weights;
+  std::vector<PartDelta> targets;
+  std::string carried_primitives;  ///< JSON array text of each primitive's extras and extensions, or empty
+};
+/// Cost: linear in the accessors. `skinned`: whether to read influences.
+MeshData read_mesh(GltfDocument& document, int mesh, bool skinned);
+
+}  // namespace mien::detail

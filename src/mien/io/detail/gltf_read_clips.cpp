@@ -1,0 +1,144 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "mien/core/error.h"
+#include "mien/io/detail/gltf_read.h"
+
+namespace mien::detail {
+namespace {
+
+Interpolation interpolation_of(const JsonObject& sampler) {
+  const std::string name = sampler.text_or("interpolation", "LINEAR");
+  if (name == "STEP") return Interpolation::step;
+  if (name == "LINEAR") return Interpolation::linear;
+  if (name == "CUBICSPLINE") return Interpolation::cubic_spline;
+  throw io_error(sampler.place_of("interpolation"), fmt::format("is \"{}\"", name.substr(0, 40)),
+                 "give STEP, LINEAR or CUBICSPLINE");
+}
+
+class ClipReader {
+ public:
+  ClipReader(GltfDocument& document, const std::vector<PartSource>& sources, Character& character)
+      : document_(document), sources_(sources), character_(character) {}
+  Clip read(const JsonObject& animation);
+
+ private:
+  void read_channel(const JsonObject& channel, const std::vector<JsonObject>& samplers, Clip& clip);
+  void read_transform(Channel channel, const JsonObject& sampler, Clip& clip);
+  void read_weights(const Channel& channel, const JsonObject& sampler, Clip& clip);
+  std::size_t accessors() const { return document_.count("accessors"); }
+
+  GltfDocument& document_;
+  const std::vector<PartSource>& sources_;
+  Character& character_;
+};
+
+Clip ClipReader::read(const JsonObject& animation) {
+  Clip clip;
+  clip.name = animation.text_or("name", "");
+  const std::vector<JsonObject> samplers = animation.objects("samplers");
+  for (const JsonObject& channel : animation.objects("channels")) read_channel(channel, samplers, clip);
+  clip.carried = animation.others({"name", "samplers", "channels"});
+  return clip;
+}
+
+void ClipReader::read_channel(const JsonObject& source, const std::vector<JsonObject>& samplers, Clip& clip) {
+  const JsonObject& sampler = samplers[source.index("sampler", samplers.size())];
+  const JsonObject target = source.object("target");
+  Channel channel;
+  channel.node = target.index_or_none("node", character_.nodes.size());
+  if (channel.node < 0) return;  // aims at an extension's property
+  channel.interpolation = interpolation_of(sampler);
+  channel.times = document_.floats(sampler.index("input", accessors()), 1).values;
+  const std::string path = target.text("path");
+  if (path == "weights") return read_weights(channel, sampler, clip);
+  if (path == "translation")
+    channel.property = Channel::Property::translation;
+  else if (path == "rotation")
+    channel.property = Channel::Property::rotation;
+  else if (path == "scale")
+    channel.property = Channel::Property::scale;
+  else
+    throw io_error(target.place_of("path"), fmt::format("is \"{}\"", path.substr(0, 40)),
+                   "give translation, rotation, scale or weights");
+  read_transform(std::move(channel), sampler, clip);
+}
+
+void ClipReader::read_transform(Channel channel, const JsonObject& sampler, Clip& clip) {
+  const std::size_t values_a_key = channel.interpolation == Interpolation::cubic_spline ? 3 : 1;
+  channel.values = document_
+                       .floats(sampler.index("output", accessors()), channel.width(),
+                               static_cast<int>(channel.times.size() * values_a_key))
+                       .values;
+  clip.channels.push_back(std::move(channel));
+}
+
+/// One channel a shape. A shape that this part alone has gets a channel for all parts.
+void ClipReader::read_weights(const Channel& common, const JsonObject& sampler, Clip& clip) {
+  const auto part = std::find_if(character_.parts.begin(), character_.parts.end(),
+                                 [&](const Part& p) { return p.node == common.node; });
+  if (part == character_.parts.end()) return;
+  const int part_index = static_cast<int>(part - character_.parts.begin());
+  const std::vector<int>& shapes = sources_[part_index].shapes;
+  if (shapes.empty())
+    throw io_error(sampler.place(), "animates shape weights of a mesh without shapes", "remove the channel");
+  const std::size_t keys = common.times.size();
+  const std::size_t values_a_key = common.interpolation == Interpolation::cubic_spline ? 3 : 1;
+  const Table table = document_.floats(sampler.index("output", accessors()), 1);
+  if (table.values.size() != keys * values_a_key * shapes.size())
+    throw io_error(sampler.place_of("output"), fmt::format("has {} values", table.values.size()),
+                   fmt::format("{} keys of {} shapes are needed", keys, shapes.size()));
+  for (std::size_t s = 0; s < shapes.size(); ++s) {
+    Channel channel = common;
+    channel.property = Channel::Property::shape_weight;
+    channel.node = -1;
+    channel.shape = shapes[s];
+    channel.part = character_.shapes[shapes[s]].parts.size() == 1 ? -1 : part_index;
+    for (std::size_t row = 0; row < keys * values_a_key; ++row)
+      channel.values.push_back(table.values[row * shapes.size() + s]);
+    clip.channels.push_back(std::move(channel));
+  }
+}
+
+/// Channels of one shape that are the same on every part that has it become one channel for all parts.
+void merge_equal_parts(const Character& character, Clip& clip) {
+  std::vector<std::vector<std::size_t>> by_shape(character.shapes.size());
+  for (std::size_t c = 0; c < clip.channels.size(); ++c)
+    if (clip.channels[c].shape >= 0 && clip.channels[c].part >= 0)
+      by_shape[clip.channels[c].shape].push_back(c);
+  std::vector<bool> drop(clip.channels.size(), false);
+  for (std::size_t s = 0; s < by_shape.size(); ++s) {
+    const std::vector<std::size_t>& same = by_shape[s];
+    if (same.empty() || same.size() != character.shapes[s].parts.size()) continue;
+    Channel& first = clip.channels[same[0]];
+    const bool equal = std::all_of(same.begin(), same.end(), [&](std::size_t c) {
+      const Channel& other = clip.channels[c];
+      return other.interpolation == first.interpolation && other.times == first.times &&
+             other.values == first.values;
+    });
+    if (!equal) continue;
+    first.part = -1;
+    for (std::size_t k = 1; k < same.size(); ++k) drop[same[k]] = true;
+  }
+  std::size_t kept = 0;
+  for (std::size_t c = 0; c < clip.channels.size(); ++c)
+    if (!drop[c]) {
+      if (kept != c) clip.channels[kept] = std::move(clip.channels[c]);
+      ++kept;
+    }
+  clip.channels.resize(kept);
+}
+
+}  // namespace
+
+void read_clips(GltfDocument& document, const std::vector<PartSource>& sources, Character& character) {
+  ClipReader reader(document, sources, character);
+  for (std::size_t a = 0; a < document.count("animations"); ++a) {
+    Clip clip = reader.read(document.element("animations", static_cast<int>(a)));
+    merge_equal_parts(character, clip);
+    character.clips.push_back(std::move(clip));
+  }
+}
+
+}  // namespace mien::detail

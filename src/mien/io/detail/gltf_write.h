@@ -1,0 +1,38 @@
+#pragma once
+/// The steps of writing a Character as glTF; write_gltf runs them in this order.
+
+#include <vector>
+
+#include "mien/character/character.h"
+#include "mien/io/detail/gltf_builder.h"
+#include "mien/io/detail/gltf_document.h"
+
+namespace mien::detail {
+
+/// A part's mesh with one row a distinct set of attributes, as glTF needs it. Rows 0 ... #V - 1 are the
+/// part's own vertices in their order; copies for UV seams come after them.
+struct SplitMesh {
+  int vertex_count = 0;         ///< #V of the part
+  std::vector<int> copy_of;     ///< per appended row: the vertex it is a copy of
+  std::vector<int> corner_row;  ///< per face corner: its row
+  std::vector<Points2> uvs;     ///< per UV set: #rows
+  int rows() const { return vertex_count + static_cast<int>(copy_of.size()); }
+  int vertex_of(int row) const { return row < vertex_count ? row : copy_of[row - vertex_count]; }
+};
+SplitMesh split_seams(const Mesh& mesh);
+
+/// The parts as glTF meshes, in order.
+Json write_meshes(const Character& character, GltfBuilder& builder);
+/// The vendor extension of one mesh: what the glTF arrays do not say about its faces, seams and groups.
+Json vendor_mesh(const Mesh& mesh, const SplitMesh& split, bool normals_computed, GltfBuilder& builder);
+/// The vendor extension of the file: landmarks and curves.
+Json vendor_root(const Character& character);
+Json write_animations(const Character& character, const std::vector<int>& node_of_part, GltfBuilder& builder);
+
+/// The runs of faces that become one primitive each.
+std::vector<FaceGroup> primitive_groups(const Mesh& mesh, const SplitMesh& split);
+
+/// Carried JSON text, parsed; an empty object for an empty text.
+Json carried_json(const std::string& text, const std::string& place);
+
+}  // namespace mien::detail
