@@ -9,7 +9,9 @@ namespace {
 void add_common_flags(CLI::App& app, mien::cli::Common& common) {
   app.add_flag("--json", common.json, "Print the result as one JSON object on stdout");
   app.add_flag("--quiet", common.quiet, "Print nothing but errors");
-  app.add_option("--threads", common.threads, "Threads to use; 0: all cores")->capture_default_str();
+  app.add_option("--threads", common.threads, "Threads to use; 0: all cores")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
 }
 
 }  // namespace
@@ -18,6 +20,7 @@ int main(int argc, char** argv) {
   CLI::App app("mien: create a facial rig once, use it on many");
   app.name("mien");
   app.require_subcommand(1);
+  app.set_version_flag("--version", "mien " MIEN_VERSION);
   mien::cli::Common common;
   mien::cli::add_sample(app, common);
   mien::cli::add_inspect(app, common);
