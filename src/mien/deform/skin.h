@@ -12,14 +12,13 @@ namespace mien {
 ///   model    #N, node space to model space
 ///   returns  #J of `skin`, model space (bind pose) to model space
 ///   throws   invalid_input: a joint out of range, inverse bind matrices that differ in number from the
-///   joints
+///            joints
 std::vector<Eigen::Matrix4d> joint_matrices(const Skin& skin, const std::vector<Eigen::Matrix4d>& model);
 
 /// Each vertex moved by the mean of its joints' matrices, weighted by its skin weights.
 ///   positions  #V x 3, model space, bind pose
 ///   returns    #V x 3, model space. A vertex without influences stays. Skin weights are divided by their
-///   sum, so that
-///              a sum that is one only to float precision does not move the bind pose
+///              sum, so that a sum that is one only to float precision does not move the bind pose
 ///   throws     invalid_input: offsets that do not match #V, a joint out of range
 ///   cost       one matrix product an influence
 ///   method     Magnenat-Thalmann et al. 1988, as in glTF 2.0

@@ -24,9 +24,8 @@ class ThinPlateSpline {
 
   ///   from, to  #L x 3 landmarks before and after
   ///   throws    invalid_input: fewer than 4 landmarks, sizes that differ, numbers that are not finite, two
-  ///   coincident
-  ///             landmarks, or all landmarks in one plane (the affine part is then not determined); names the
-  ///             rows
+  ///             coincident landmarks, or all landmarks in one plane (the affine part is then not determined);
+  ///             names the rows
   ///   cost      O(#L^3) once, O(#L) a point
   ThinPlateSpline(const PointsD& from, const PointsD& to, const Options& options);
   ThinPlateSpline(const PointsD& from, const PointsD& to) : ThinPlateSpline(from, to, Options{}) {}

@@ -28,8 +28,7 @@ struct PlotOptions {
 
 /// Curves over a common x axis with ticks, a light grid and a legend.
 ///   throws  invalid_input: no series, a series whose x and y differ in number, an x that is not finite, a
-///   picture side
-///           out of range
+///           picture side out of range
 Picture line_plot(const std::vector<Series>& series, const PlotOptions& options = {});
 std::string line_plot_svg(const std::vector<Series>& series, const PlotOptions& options = {});
 

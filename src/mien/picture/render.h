@@ -60,12 +60,11 @@ class Renderer {
 
   ///   posed   one #V x 3 a part, model space (`evaluate`)
   ///   throws  invalid_input: sizes that differ from the character's, positions that are not finite, nothing
-  ///   to show,
-  ///           a picture side out of range
+  ///           to show, a picture side out of range
   ///   cost    linear in pixels; 512 x 512 of a 27,000-vertex face takes about 0.4 s on two cores
   ///   method  rays (Embree) with 16 samples a pixel; smooth normals over welded seams; a soft key light with
-  ///   shadows,
-  ///           sky light by ambient occlusion (filtered over 4 x 4 pixels along the surface), a little gloss
+  ///           shadows, sky light by ambient occlusion (filtered over 4 x 4 pixels along the surface), a little
+  ///           gloss
   /// Colours: a material that has one keeps it; otherwise parts, groups and materials get a look by their
   /// names (skin, eye, iris, teeth, gum, lash); shells that only shade the eye (tear fluid, occlusion) are
   /// left out.
