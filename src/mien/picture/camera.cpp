@@ -44,18 +44,25 @@ Points stack(const std::vector<Points>& posed) {
   return all;
 }
 
-Points moved_by_shapes(const Character& character, const std::vector<Points>& posed) {
-  std::vector<Points> moved;
+/// What the shapes move: where it is, and where it goes at weight 1.
+struct Moved {
+  Points from, to;
+};
+
+Moved moved_by_shapes(const Character& character, const std::vector<Points>& posed) {
+  const std::vector<Eigen::Matrix4d> model = model_matrices(character);
+  std::vector<Points> from, to;
   for (const Shape& shape : character.shapes)
     for (const PartDelta& delta : shape.parts) {
       if (delta.part < 0 || delta.part >= static_cast<int>(posed.size())) continue;
-      const Points& from = posed[delta.part];
-      Points rows(static_cast<Eigen::Index>(delta.vertices.size()), 3);
-      for (std::size_t i = 0; i < delta.vertices.size(); ++i)
-        rows.row(static_cast<Eigen::Index>(i)) = from.row(delta.vertices[i]);
-      moved.push_back(std::move(rows));
+      const Part& part = character.parts[delta.part];
+      const bool held = part.skin < 0 && part.node >= 0 && part.node < static_cast<int>(model.size());
+      const Eigen::Matrix3d turn =
+          held ? Eigen::Matrix3d(model[part.node].topLeftCorner<3, 3>()) : Eigen::Matrix3d::Identity();
+      from.push_back(posed[delta.part](delta.vertices, Eigen::all));
+      to.push_back(from.back() + Points(delta.deltas * turn.cast<float>().transpose()));
     }
-  return stack(moved);
+  return {stack(from), stack(to)};
 }
 
 Points inside(const Points& points, const Box& box) {
@@ -97,7 +104,8 @@ Camera frame_points(const Points& points, const FrameOptions& options) {
   const Eigen::Vector3d low = seen.colwise().minCoeff(), high = seen.colwise().maxCoeff();
   const Eigen::Vector3d centre = (low + high) / 2;
   const double slope = std::tan(camera.field_of_view * std::numbers::pi / 360) * (1 - 2 * options.margin);
-  double distance = 1e-6 * (high - low).norm() + 1e-30;
+  // A single point is seen from some way off.
+  double distance = high == low ? 1e-3 * std::max(centre.norm(), 1e-30) : 0;
   for (Eigen::Index v = 0; v < seen.rows(); ++v) {
     const Eigen::Vector3d p = seen.row(v).transpose() - centre;
     const double wide = std::max(std::abs(p.x()) / options.aspect, std::abs(p.y()));
@@ -110,17 +118,19 @@ Camera frame_points(const Points& points, const FrameOptions& options) {
 
 Camera frame_head(const Character& character, const std::vector<Points>& posed, const FrameOptions& options) {
   const Points all = stack(posed);
-  const Points moved = moved_by_shapes(character, posed);
-  if (moved.rows() > 0 && all.allFinite()) {
-    Box face = bounding_box(moved);
-    const double reach = 0.45 * face.diagonal();
-    if (bounding_box(all).diagonal() > 2.6 * face.diagonal() && reach > 0) {
-      face.low.array() -= reach;
-      face.high.array() += reach;
-      return frame_points(inside(all, face), options);
-    }
-  }
-  return frame_points(all, options);
+  const Moved moved = moved_by_shapes(character, posed);
+  if (moved.from.rows() == 0 || !all.allFinite() || !moved.to.allFinite()) return frame_points(all, options);
+  const auto grown = [](Box box, double by) {
+    box.low.array() -= by;
+    box.high.array() += by;
+    return box;
+  };
+  const Box face = bounding_box(moved.from), whole = bounding_box(all);
+  const bool has_body = whole.diagonal() > 2.6 * face.diagonal() && face.diagonal() > 0;
+  const Points shown = has_body ? inside(all, grown(face, 0.45 * face.diagonal())) : all;
+  // A wildly exaggerated shape does not make the head small.
+  const Points reached = inside(moved.to, grown(bounding_box(shown), 0.12 * bounding_box(shown).diagonal()));
+  return frame_points(stack({shown, reached}), options);
 }
 
 }  // namespace mien

@@ -38,8 +38,9 @@ struct FrameOptions {
 ///   throws  invalid_input: no points, or points that are not finite
 Camera frame_points(const Points& points, const FrameOptions& options = {});
 
-/// The camera that holds the head: everything, or where a body hangs on it, what the shapes move and its
-/// surroundings. One camera, framed in rest, keeps a row of stills comparable.
+/// The camera that holds the head in any of its shapes: everything or, where a body hangs on it, what the
+/// shapes move and its surroundings, with room for each shape at weight 1. Framed once in rest, it keeps a
+/// row of stills comparable.
 ///   posed  one #V x 3 a part, model space (`evaluate`)
 Camera frame_head(const Character& character, const std::vector<Points>& posed,
                   const FrameOptions& options = {});

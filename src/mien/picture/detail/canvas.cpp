@@ -26,7 +26,7 @@ std::string valid_utf8(std::string_view text) {
     if ((lead == 0xe0 && second < 0xa0) || (lead == 0xed && second > 0x9f) ||
         (lead == 0xf0 && second < 0x90) || (lead == 0xf4 && second > 0x8f))
       good = false;
-    valid += good ? std::string(text.substr(i, length)) : "?";
+    valid.append(good ? text.substr(i, length) : std::string_view("?"));
     i += good ? length : 1;
   }
   return valid;

@@ -74,7 +74,9 @@ struct Writer {
     if (style.turn != 0)
       out += " transform=\"rotate(" + number(-style.turn * 180 / std::numbers::pi) + " " +
              number(text.at.x()) + " " + number(text.at.y()) + ")\"";
-    out += ">" + escaped(valid_utf8(text.text)) + "</text>\n";
+    out += '>';
+    out += escaped(valid_utf8(text.text));
+    out += "</text>\n";
   }
 };
 

@@ -1,5 +1,6 @@
 #include "mien/picture/detail/ray_scene.h"
 
+#include <initializer_list>
 #include <limits>
 #include <string>
 #include <vector>
@@ -148,13 +149,15 @@ void RayScene::build() {
   all_ = rtcNewScene(device_);
   solid_ = rtcNewScene(device_);
   const auto solid_count = static_cast<std::size_t>(solid_count_);
-  RTCGeometry solid_geometry = make_geometry(0, solid_count);
-  RTCGeometry thin_geometry = make_geometry(solid_count, triangles.size());
-  rtcAttachGeometryByID(solid_, solid_geometry, 0);
-  rtcAttachGeometryByID(all_, solid_geometry, 0);
-  rtcAttachGeometryByID(all_, thin_geometry, 1);
-  rtcReleaseGeometry(solid_geometry);
-  rtcReleaseGeometry(thin_geometry);
+  const auto attach = [&](std::size_t begin, std::size_t end, unsigned id,
+                          std::initializer_list<RTCScene> scenes) {
+    if (begin == end) return;
+    RTCGeometry geometry = make_geometry(begin, end);
+    for (RTCScene scene : scenes) rtcAttachGeometryByID(scene, geometry, id);
+    rtcReleaseGeometry(geometry);
+  };
+  attach(0, solid_count, 0, {solid_, all_});
+  attach(solid_count, triangles.size(), 1, {all_});
   for (RTCScene scene : {solid_, all_}) {
     rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
     rtcCommitScene(scene);
