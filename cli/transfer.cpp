@@ -1,10 +1,144 @@
+#include <fmt/format.h>
+
 #include "command.h"
+#include "mien/core/error.h"
+#include "mien/io/landmark_file.h"
+#include "mien/io/load.h"
+#include "mien/transfer/transfer.h"
 
 namespace mien::cli {
+namespace {
+
+struct Request {
+  std::string source, target, output, source_landmarks, target_landmarks, report;
+  TransferOptions options;
+  std::vector<std::string> exaggerate;
+  bool compress = false;
+};
+
+/// "PCT" for all shapes, "NAME=PCT" for one.
+void read_exaggeration(const std::vector<std::string>& texts, TransferOptions& options) {
+  for (const std::string& text : texts) {
+    const std::size_t equals = text.rfind('=');
+    const std::string number = equals == std::string::npos ? text : text.substr(equals + 1);
+    std::size_t used = 0;
+    double percent = 0;
+    try {
+      percent = std::stod(number, &used);
+    } catch (const std::exception&) {
+      used = 0;
+    }
+    if (used == 0 || used != number.size())
+      throw invalid_input("--exaggerate " + text, "is not a percentage", "PCT or NAME=PCT, such as 150 or jawOpen=120");
+    if (equals == std::string::npos)
+      options.exaggeration = percent / 100;
+    else
+      options.shape_exaggeration[text.substr(0, equals)] = percent / 100;
+  }
+}
+
+Character load_with_landmarks(const std::string& path, const std::string& landmarks) {
+  Character character = load(path);
+  if (!landmarks.empty()) {
+    LandmarkSet set = read_landmarks(landmarks, character);
+    character.landmarks = std::move(set.landmarks);
+    character.curves = std::move(set.curves);
+  }
+  if (character.landmarks.empty() && character.curves.empty())
+    throw invalid_input("landmarks", "the file has none inside and no landmark file was given",
+                        "--source-landmarks and --target-landmarks with files of named points")
+        .in_file(path);
+  return character;
+}
+
+nlohmann::json as_json(const TransferReport& report, const std::string& output) {
+  nlohmann::json steps = nlohmann::json::object(), pieces = nlohmann::json::array();
+  for (const StepTime& step : report.steps) steps[step.step] = step.seconds;
+  for (const PieceReport& piece : report.pieces)
+    pieces.push_back({{"piece", piece.piece}, {"kind", piece.kind}, {"moves_with", piece.way}});
+  nlohmann::json warnings = nlohmann::json::array();
+  for (const TransferWarning& warning : report.warnings)
+    warnings.push_back({{"what", warning.what}, {"remedy", warning.remedy}});
+  return {{"output", output},
+          {"landmarks", report.pairs.names.size()},
+          {"scale", report.similarity.scale},
+          {"deltas",
+           {{"model", name_of(report.deltas.model)},
+            {"warp_share", report.deltas.warp_share},
+            {"contact_ratio", report.deltas.contact_ratio},
+            {"stretch", report.deltas.stretch},
+            {"contact_shapes", report.deltas.contact_shapes},
+            {"reason", report.deltas.reason}}},
+          {"pieces", pieces},
+          {"seconds", steps},
+          {"warnings", warnings}};
+}
+
+std::string as_text(const TransferResult& result, const std::string& output) {
+  const TransferReport& report = result.report;
+  double seconds = 0;
+  for (const StepTime& step : report.steps) seconds += step.seconds;
+  std::string text = fmt::format("{}: {} shapes, {} joints, {} clips on {} parts by {} landmarks, {:.2f} s\n", output,
+                                 result.character.shapes.size(),
+                                 result.character.skins.empty() ? 0 : result.character.skins[0].joints.size(),
+                                 result.character.clips.size(), result.character.parts.size(),
+                                 report.pairs.names.size(), seconds);
+  text += fmt::format("deltas: {} ({:.0f} % warp; contacts {:.2f} over {} shapes, stretch {:.3f}): {}\n",
+                      name_of(report.deltas.model), 100 * report.deltas.warp_share, report.deltas.contact_ratio,
+                      report.deltas.contact_shapes, report.deltas.stretch, report.deltas.reason);
+  for (const PieceReport& piece : report.pieces)
+    text += fmt::format("piece {} ({}): moves with {}\n", piece.piece, piece.kind, piece.way);
+  for (const TransferWarning& warning : report.warnings)
+    text += fmt::format("warning: {}; {}\n", warning.what, warning.remedy);
+  return text;
+}
+
+void run(Request& request, const Common& common) {
+  read_exaggeration(request.exaggerate, request.options);
+  const Character source = load_with_landmarks(request.source, request.source_landmarks);
+  const Character target = load_with_landmarks(request.target, request.target_landmarks);
+  request.options.progress = progress_bar(common);
+  const TransferResult result = transfer(source, target, request.options);
+  save(result.character, request.output, {request.compress});
+  print_result(common, as_text(result, request.output), as_json(result.report, request.output));
+}
+
+}  // namespace
 
 void add_transfer(CLI::App& app, Common& common) {
-  (void)common;
-  app.add_subcommand("transfer", "");
+  CLI::App* command = app.add_subcommand("transfer", "Put the rig of SOURCE on TARGET");
+  auto request = std::make_shared<Request>();
+  TransferOptions& options = request->options;
+  command->add_option("source", request->source, "A character: shapes, joints or both (.glb, .gltf)")->required();
+  command->add_option("target", request->target, "A mesh or a character, whose rig is replaced (.obj, .glb, .gltf)")
+      ->required();
+  command->add_option("-o,--output", request->output, "The target with the source's rig (.glb, .gltf)")->required();
+  command->add_option("--source-landmarks", request->source_landmarks,
+                      "Landmark file of the source (default: those inside the file)");
+  command->add_option("--target-landmarks", request->target_landmarks,
+                      "Landmark file of the target (default: those inside the file)");
+  const std::map<std::string, TransferMethod> methods{{"register", TransferMethod::registration},
+                                                      {"thesis", TransferMethod::thesis}};
+  command->add_option("--method", options.method, "register: no folds, no glued lips; thesis: the baseline")
+      ->transform(CLI::CheckedTransformer(methods))
+      ->default_str("register");
+  std::map<std::string, DeltaModel> models;
+  for (const DeltaModel model : {DeltaModel::automatic, DeltaModel::local, DeltaModel::raw, DeltaModel::copy,
+                                 DeltaModel::warp, DeltaModel::thesis})
+    models[std::string(name_of(model))] = model;
+  command->add_option("--deltas", options.deltas, "How displacements are carried")
+      ->transform(CLI::CheckedTransformer(models))
+      ->default_str("auto");
+  command->add_option("--exaggerate", request->exaggerate,
+                      "PCT for all shapes or NAME=PCT for one, in percent; repeatable (default: 100)");
+  command->add_option("--max-influences", options.max_influences, "Most joints a vertex; 0: as many as needed")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  command->add_flag("--replace-uvs", options.replace_uvs, "Take the source's UVs even where the target has its own");
+  command->add_flag("--compress", request->compress, "Write quantised, meshopt-compressed glTF");
+  command->add_option("--report", request->report, "Folder for a page with pictures and the same as JSON");
+  command->footer("Example:\n  mien transfer human.glb cartoon.glb -o cartoon-rigged.glb --report report");
+  command->callback([request, &common] { run(*request, common); });
 }
 
 }  // namespace mien::cli

@@ -42,6 +42,43 @@ Eigen::VectorXd local_scale(const PointsD& aligned, const PointsD& guide, const 
   return scale;
 }
 
+namespace {
+
+/// T(x + d) - T(x) where d is not zero.
+PointsD through_spline(const ThinPlateSpline& spline, const PointsD& positions, const PointsD& deltas) {
+  std::vector<Eigen::Index> moving;
+  for (Eigen::Index v = 0; v < deltas.rows(); ++v)
+    if (deltas.row(v).squaredNorm() > 0) moving.push_back(v);
+  PointsD from(static_cast<Eigen::Index>(moving.size()), 3), to(from.rows(), 3);
+  for (Eigen::Index i = 0; i < from.rows(); ++i) {
+    from.row(i) = positions.row(moving[static_cast<std::size_t>(i)]);
+    to.row(i) = from.row(i) + deltas.row(moving[static_cast<std::size_t>(i)]);
+  }
+  const PointsD change = spline(to) - spline(from);
+  PointsD result = PointsD::Zero(deltas.rows(), 3);
+  for (Eigen::Index i = 0; i < from.rows(); ++i) result.row(moving[static_cast<std::size_t>(i)]) = change.row(i);
+  return result;
+}
+
+}  // namespace
+
+PointsD carry_deltas(const DeltaMaps& maps, DeltaModel model, double warp_share, const PointsD& deltas) {
+  const PointsD turned = maps.similarity.of_vectors(deltas);
+  const auto local = [&] { return PointsD(maps.scale.asDiagonal() * turned); };
+  const auto warp = [&] { return through_spline(*maps.dense, maps.aligned, turned); };
+  switch (model) {
+    case DeltaModel::raw: return turned;
+    case DeltaModel::copy: return turned / maps.similarity.scale;
+    case DeltaModel::local: return local();
+    case DeltaModel::warp: return warp();
+    case DeltaModel::thesis: return through_spline(*maps.landmarks, maps.positions, deltas);
+    case DeltaModel::automatic: break;
+  }
+  if (warp_share <= 0) return local();
+  if (warp_share >= 1) return warp();
+  return (1 - warp_share) * local() + warp_share * warp();
+}
+
 std::vector<int> farthest_points(const PointsD& points, int count) {
   std::vector<int> chosen;
   if (points.rows() == 0) return chosen;

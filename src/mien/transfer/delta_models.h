@@ -35,6 +35,21 @@ Eigen::VectorXd local_scale(const PointsD& aligned, const PointsD& guide, const 
 ThinPlateSpline dense_spline(const PointsD& aligned, const PointsD& guide, const PointsD& landmarks_from,
                              const PointsD& landmarks_to, int samples = 500);
 
+/// The skin and the maps that displacements are carried by.
+struct DeltaMaps {
+  PointsD positions;  ///< #V x 3 source skin, source model space
+  PointsD aligned;    ///< #V x 3 after the similarity
+  Similarity similarity;
+  Eigen::VectorXd scale;             ///< #V: local_scale; used by local
+  const ThinPlateSpline* dense = nullptr;      ///< aligned -> target; used by warp
+  const ThinPlateSpline* landmarks = nullptr;  ///< source -> target; used by thesis
+};
+
+/// One shape's displacements (#V x 3, source model space) in the target's model space, still at the source's vertices:
+/// (1 - warp_share) local + warp_share warp when `model` is automatic, else the named model alone. Cost: O(#V), and
+/// O(#samples) a moving vertex for the splines.
+PointsD carry_deltas(const DeltaMaps& maps, DeltaModel model, double warp_share, const PointsD& deltas);
+
 /// Indices of `count` rows, each the farthest from those before, starting with the row farthest from the mean.
 std::vector<int> farthest_points(const PointsD& points, int count);
 

@@ -7,6 +7,7 @@
 #include "mien/geometry/laplacian.h"
 #include "mien/geometry/openness.h"
 #include "mien/geometry/thin_plate_spline.h"
+#include "mien/transfer/detail/face_size.h"
 #include "mien/transfer/detail/matching.h"
 
 namespace mien {
@@ -27,12 +28,6 @@ constexpr std::array<Stage, 11> schedule{{{10, .1},
                                           {.001, 0},
                                           {3e-4, 0},
                                           {1e-4, 0}}};
-
-/// The landmarks' box, held to what a face can be of its skin: few landmarks may sit close together.
-double face_size(const PointsD& landmarks, const PointsD& skin) {
-  const auto diagonal = [](const PointsD& p) { return (p.colwise().maxCoeff() - p.colwise().minCoeff()).norm(); };
-  return std::clamp(diagonal(landmarks), 0.35 * diagonal(skin), diagonal(skin));
-}
 
 Eigen::VectorXd normalised_areas(const Surface& surface) {
   const Eigen::VectorXd areas = vertex_areas(surface.positions, surface.triangles);
@@ -60,7 +55,7 @@ Registration register_surfaces(const Surface& source, const Surface& target, con
                                const PointsD& target_landmarks, const RegistrationOptions& options) {
   Registration result;
   result.similarity = fit_similarity(source_landmarks, target_landmarks);
-  result.unit = face_size(target_landmarks, target.positions);
+  result.unit = detail::face_size(target_landmarks, target.positions);
   // From here on the face has size one and sits at its landmarks' centre.
   const Eigen::RowVector3d centre = target_landmarks.colwise().mean();
   const auto normalise = [&](const PointsD& p) { return PointsD((p.rowwise() - centre) / result.unit); };

@@ -1,0 +1,154 @@
+#include "mien/transfer/carry_uvs.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <utility>
+
+#include "mien/core/parallel.h"
+#include "mien/geometry/surface_query.h"
+#include "mien/geometry/triangle.h"
+
+namespace mien {
+namespace {
+
+std::size_t at(int index) { return static_cast<std::size_t>(index); }
+
+Eigen::Vector3d row(const PointsD& points, int r) { return points.row(r).transpose(); }
+
+constexpr double same_uv = 1e-5;
+/// A corner looks at no more triangles than this around its face's centre.
+constexpr std::size_t most_triangles = 400;
+
+/// #T x 3: the triangle across edge (k, k + 1) in the same chart, -1 at a seam or border.
+std::vector<std::array<int, 3>> chart_neighbours(const UvSource& source) {
+  std::vector<std::array<int, 3>> neighbours(source.uvs.size(), {-1, -1, -1});
+  std::map<std::pair<int, int>, std::pair<int, int>> open;  // directed edge -> (triangle, k)
+  for (int t = 0; t < static_cast<int>(source.uvs.size()); ++t) {
+    if (!source.has_uv[at(t)]) continue;
+    for (int k = 0; k < 3; ++k) {
+      const int a = source.triangles(t, k), b = source.triangles(t, (k + 1) % 3);
+      open[{a, b}] = {t, k};
+      const auto other = open.find({b, a});
+      if (other == open.end()) continue;
+      const auto [s, j] = other->second;
+      const bool joined = (source.uvs[at(t)][at(k)] - source.uvs[at(s)][at((j + 1) % 3)]).norm() < same_uv &&
+                          (source.uvs[at(t)][at((k + 1) % 3)] - source.uvs[at(s)][at(j)]).norm() < same_uv;
+      if (!joined) continue;
+      neighbours[at(t)][at(k)] = s;
+      neighbours[at(s)][at(j)] = t;
+    }
+  }
+  return neighbours;
+}
+
+class CornerFinder {
+ public:
+  CornerFinder(const UvSource& source) : source_(source), neighbours_(chart_neighbours(source)) {}
+
+  /// Triangles of the chart around `start`, nearest rings first, no further than `reach` from `centre`.
+  std::vector<int> around(int start, const Eigen::Vector3d& centre, double reach) const {
+    std::vector<int> found{start};
+    for (std::size_t i = 0; i < found.size() && found.size() < most_triangles; ++i)
+      for (const int next : neighbours_[at(found[i])]) {
+        if (next < 0 || std::find(found.begin(), found.end(), next) != found.end()) continue;
+        const Eigen::Vector3d middle = (corner(next, 0) + corner(next, 1) + corner(next, 2)) / 3;
+        const double size = (corner(next, 1) - corner(next, 0)).norm();
+        if ((middle - centre).norm() <= reach + size) found.push_back(next);
+      }
+    return found;
+  }
+
+  Eigen::Vector2d uv_at(const Eigen::Vector3d& position, const std::vector<int>& candidates) const {
+    int best = candidates.front();
+    double distance = std::numeric_limits<double>::infinity();
+    for (const int t : candidates) {
+      const auto found = closest_point_on_triangle(position, corner(t, 0), corner(t, 1), corner(t, 2));
+      const double d = (found.position - position).squaredNorm();
+      if (d < distance) {
+        distance = d;
+        best = t;
+      }
+    }
+    Eigen::Vector3d weights = barycentric_on_plane(position, corner(best, 0), corner(best, 1), corner(best, 2));
+    // Beyond the chart's edge the last triangle goes on, but not further than its own size.
+    if (weights.minCoeff() < -1 || weights.maxCoeff() > 2)
+      weights = closest_point_on_triangle(position, corner(best, 0), corner(best, 1), corner(best, 2)).barycentric;
+    const auto& uv = source_.uvs[at(best)];
+    return weights[0] * uv[0] + weights[1] * uv[1] + weights[2] * uv[2];
+  }
+
+ private:
+  Eigen::Vector3d corner(int t, int k) const { return row(source_.guide, source_.triangles(t, k)); }
+  const UvSource& source_;
+  std::vector<std::array<int, 3>> neighbours_;
+};
+
+/// Per corner of all faces its UV; NaN where the guide has none.
+std::vector<Eigen::Vector2d> corner_uvs(const UvSource& source, const PointsD& positions, const Faces& faces) {
+  const CornerFinder finder(source);
+  const SurfaceQuery guide(source.guide, source.triangles);
+  std::vector<Eigen::Vector2d> uvs(faces.corner_count(), Eigen::Vector2d::Constant(std::nan("")));
+  const auto facing = [&](const Eigen::Vector3d& normal) {
+    return [&, normal](int t, const Eigen::Vector3d&) {
+      const Eigen::Vector3d a = row(source.guide, source.triangles(t, 0));
+      const Eigen::Vector3d b = row(source.guide, source.triangles(t, 1));
+      const Eigen::Vector3d c = row(source.guide, source.triangles(t, 2));
+      return (b - a).cross(c - a).dot(normal) > 0;
+    };
+  };
+  const double reach_limit = 0.05 * (positions.colwise().maxCoeff() - positions.colwise().minCoeff()).norm();
+  parallel_for(faces.size(), 64, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t f = begin; f < end; ++f) {
+      const auto face = faces[f];
+      if (face.size() < 3) continue;
+      Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+      for (const int v : face) centre += row(positions, v) / static_cast<double>(face.size());
+      double radius = 0;
+      Eigen::Vector3d normal = Eigen::Vector3d::Zero();
+      for (std::size_t c = 0; c < face.size(); ++c) {
+        const Eigen::Vector3d a = row(positions, face[c]) - centre;
+        radius = std::max(radius, a.norm());
+        normal += a.cross(row(positions, face[(c + 1) % face.size()]) - centre);
+      }
+      auto hit = guide.closest(centre, reach_limit, facing(normal));
+      if (hit.triangle < 0) hit = guide.closest(centre);
+      if (!source.has_uv[at(hit.triangle)]) continue;
+      const auto candidates = finder.around(hit.triangle, hit.position, 1.5 * radius);
+      for (std::size_t c = 0; c < face.size(); ++c)
+        uvs[at(faces.offset(f)) + c] = finder.uv_at(row(positions, face[c]), candidates);
+    }
+  });
+  return uvs;
+}
+
+}  // namespace
+
+UvSet carry_uvs(const UvSource& source, const PointsD& positions, const Faces& faces) {
+  const auto uvs = corner_uvs(source, positions, faces);
+  std::vector<std::vector<int>> rows_of(static_cast<std::size_t>(positions.rows()));
+  std::vector<Eigen::Vector2d> rows;
+  UvSet result;
+  result.corners.assign(uvs.size(), -1);
+  for (std::size_t c = 0; c < uvs.size(); ++c) {
+    if (!uvs[c].allFinite()) continue;
+    auto& known = rows_of[at(faces.corners()[c])];
+    // Neighbouring faces of one chart find the same place up to rounding of the search.
+    const auto same = std::find_if(known.begin(), known.end(),
+                                   [&](int r) { return (rows[at(r)] - uvs[c]).norm() < 2e-3; });
+    if (same != known.end()) {
+      result.corners[c] = *same;
+      continue;
+    }
+    known.push_back(static_cast<int>(rows.size()));
+    result.corners[c] = known.back();
+    rows.push_back(uvs[c]);
+  }
+  result.coordinates.resize(static_cast<Eigen::Index>(rows.size()), 2);
+  for (std::size_t r = 0; r < rows.size(); ++r)
+    result.coordinates.row(static_cast<Eigen::Index>(r)) = rows[r].transpose().cast<float>();
+  return result;
+}
+
+}  // namespace mien
