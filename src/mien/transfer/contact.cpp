@@ -2,8 +2,9 @@
 // box's diagonal, about half of the diagonal of a whole head's skin.
 #include "mien/transfer/contact.h"
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
-#include <Eigen/SVD>
+
 #include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <cctype>
@@ -248,8 +249,8 @@ DeltaDecision ContactModel::decide(DeltaModel wanted) const {
   double weight = 0, sum = 0, squares = 0;
   for (const int v : farthest_points(s.guide, 300)) {
     const Eigen::Matrix3d a = affine(row(s.maps.aligned, v), stretch_radius * s.unit, 0.03);
-    const Eigen::JacobiSVD<Eigen::Matrix3d> svd(a);
-    const Eigen::Array3d stretch = svd.singularValues().array().max(1e-6).log();
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> squared(a.transpose() * a, Eigen::EigenvaluesOnly);
+    const Eigen::Array3d stretch = squared.eigenvalues().array().max(1e-12).log() / 2;
     for (int k = 0; k < 3; ++k) {
       weight += s.motion[v];
       sum += s.motion[v] * stretch[k];
