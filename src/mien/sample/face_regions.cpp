@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace mien::sample {
 
@@ -78,14 +79,18 @@ FaceRegions make_regions(const HeadMesh& head, const HeadForm& form) {
   const MouthForm& mouth = form.mouth;
   const int border = head.half.lip_border;
   const double last = static_cast<double>(head.half.mouth[0].size() - 1);
-  regions.jaw = diffuse(head, [&](int v) -> std::optional<double> {
+  const auto jaw_side = [&](int v, double on_lips) -> std::optional<double> {
     const Vector3d& p = head.points[v];
-    const LoopPlace place = regions.mouth[v];
-    if (place.ring >= border) return smooth_step(0.38, 0.66, place.slot / last);
+    if (regions.mouth[v].ring >= border) return on_lips;
     if (p.y() > mouth.line + 1.9 || p.y() < mouth.lower_border - 5.6 || p.z() < 0.5) return 0;
     if (p.y() < mouth.lower_border - 0.8 && p.z() > 6) return 1;
     return std::nullopt;
-  });
+  };
+  const auto along = [&](int v) { return regions.mouth[v].slot / last; };
+  // By this cosine the opening mouth is an oval.
+  regions.jaw =
+      diffuse(head, [&](int v) { return jaw_side(v, 0.5 - 0.5 * std::cos(std::numbers::pi * along(v))); });
+  regions.lower = diffuse(head, [&](int v) { return jaw_side(v, smooth_step(0.4, 0.6, along(v))); });
   regions.neck = diffuse(head, [&](int v) -> std::optional<double> {
     const Vector3d& p = head.points[v];
     if (p.y() < mouth.lower_border - 7.5) return 1;

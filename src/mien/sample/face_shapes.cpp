@@ -23,8 +23,8 @@ Field pulled(const HeadMesh& head, const FaceRegions& regions, const std::vector
   for (std::size_t v = 0; v < field.size(); ++v)
     for (const Pull& pull : pulls) {
       double w = soft(head.points[v], pull.centre, pull.radii);
-      if (pull.on == On::upper) w *= 1 - regions.jaw[v];
-      if (pull.on == On::lower) w *= regions.jaw[v];
+      if (pull.on == On::upper) w *= 1 - regions.lower[v];
+      if (pull.on == On::lower) w *= regions.lower[v];
       field[v] += w * pull.move;
     }
   return field;
@@ -80,7 +80,8 @@ void add_eyes(Shapes& shapes, const HeadMesh& head, const HeadForm& form, const 
   shapes.add_pair("eyeWide", lids(11, -4) + pull({{{3.2, 1.6, 8.2}, {2.4, 1.1, 2}, {0, 0.15, 0}}}));
 }
 
-void add_jaw(Shapes& shapes, const HeadMesh& head, const FaceRegions& regions, Field& jaw_open) {
+void add_jaw(Shapes& shapes, const HeadMesh& head, const FaceRegions& regions, const Field& lift,
+             Field& jaw_open) {
   const auto add = [&](const std::string& name, const Motion& motion) {
     shapes.add(name, carried(head, regions.jaw, motion));
     shapes.list.back().lower_teeth = shapes.list.back().tongue = motion;
@@ -95,6 +96,7 @@ void add_jaw(Shapes& shapes, const HeadMesh& head, const FaceRegions& regions, F
   add("jawLeft", left);
   add("jawRight", right);
   add("jawOpen", jaw_opening(21));
+  shapes.list.back().skin = shapes.list.back().skin + lift;
   jaw_open = shapes.list.back().skin;
 }
 
@@ -107,9 +109,11 @@ void add_lips(Shapes& shapes, const HeadMesh& head, const HeadForm& form, const 
   const Field aside = pull({{middle, {4.4, 3.2, 4}, {0.95, 0.06, -0.1}}});
   shapes.add("mouthLeft", aside);
   shapes.add("mouthRight", mirrored(head, aside));
-  shapes.add_pair("mouthSmile", pull({{corner, {2.9, 2.3, 3.4}, {0.52, 0.8, -0.5}},
-                                      {{4.0, -3.9, 8.0}, {2.3, 2.2, 2.6}, {0.2, 0.3, 0.28}}}) +
-                                    lid_field(head, form, regions, 0, 3));
+  shapes.add_pair("mouthSmile",
+                  pull({{corner, {3.0, 2.3, 3.6}, {0.68, 0.62, -0.55}},
+                        {{1.0, m.line + 0.4, m.front - 0.4}, {2.2, 1.6, 3}, {0.05, 0.14, -0.06}, On::upper},
+                        {{3.9, -4.0, 8.0}, {2.4, 2.2, 2.6}, {0.22, 0.32, 0.32}}}) +
+                      lid_field(head, form, regions, 0, 3));
   shapes.add_pair("mouthFrown", pull({{corner, {2.2, 2.0, 3}, {0.08, -0.75, -0.1}}}));
   shapes.add_pair("mouthDimple", pull({{corner, {1.9, 1.7, 2.4}, {0.4, 0.06, -0.55}}}));
   shapes.add_pair("mouthStretch", pull({{corner, {2.8, 2.3, 3.4}, {0.72, -0.32, -0.5}},
@@ -172,7 +176,11 @@ std::vector<FaceShape> make_face_shapes(const HeadMesh& head, const HeadForm& fo
   Shapes shapes(head);
   Field jaw_open;
   add_eyes(shapes, head, form, regions);
-  add_jaw(shapes, head, regions, jaw_open);
+  // The upper lip makes way for the teeth.
+  const MouthForm& m = form.mouth;
+  const Field lift =
+      pulled(head, regions, {{{0, m.line + 0.4, m.front - 0.3}, {2.6, 2.0, 3}, {0, 0.22, 0}, On::upper}});
+  add_jaw(shapes, head, regions, lift, jaw_open);
   shapes.add("mouthClose", mouth_close(head, regions, jaw_open));
   add_lips(shapes, head, form, regions);
   add_brows_cheeks_nose(shapes, head, form, regions);

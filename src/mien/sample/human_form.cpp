@@ -10,37 +10,40 @@ Sculpt human_sculpt() {
       // Middle of the face, the upper jaw behind the lips, the floor of the mouth.
       ellipsoid({0, -2.6, 3.3}, {6.0, 6.0, 5.4}, 2),
       ellipsoid({0, -6.4, 5.3}, {3.7, 3.3, 4.75}, 2),
-      ellipsoid({0, -7.8, 3.4}, {4.6, 3.0, 5.0}, 2),
+      ellipsoid({0, -7.8, 3.4}, {4.2, 3.0, 5.0}, 2),
       // Neck.
       capsule({0, -19, -3.2}, 5.2, {0, -7, -1.8}, 4.7, 2.5),
       capsule({5.2, -3.6, -2.4}, 0.9, {1.2, -18.5, 1.6}, 0.7, 3).both(),
       // Jaw: ramus, body, chin.
-      capsule({5.4, -1.5, 1.4}, 1.0, {4.9, -6.4, 2.2}, 1.1, 2.5).both(),
-      capsule({4.8, -6.8, 2.4}, 1.1, {1.6, -10.3, 7.7}, 1.15, 2.5).both(),
-      ellipsoid({0, -10.2, 8.2}, {1.7, 1.45, 1.75}, 1.6),
+      capsule({5.2, -1.5, 1.6}, 0.9, {4.4, -6.2, 2.4}, 0.9, 2.4).both(),
+      capsule({4.2, -6.7, 2.8}, 1.0, {1.4, -10.3, 7.7}, 1.1, 2.2).both(),
+      ellipsoid({0, -10.2, 8.2}, {1.6, 1.45, 1.75}, 1.8),
       // Cheeks: flesh, cheekbone, arch back to the ear.
-      ellipsoid({3.0, -4.6, 6.5}, {2.5, 3.0, 2.5}, 2).both(),
-      ellipsoid({4.3, -2.4, 6.2}, {1.9, 1.3, 1.9}, 2.2).both(),
-      capsule({4.8, -2.0, 5.4}, 0.8, {6.1, -1.4, 1.2}, 0.6, 2.4).both(),
+      ellipsoid({3.0, -5.4, 4.8}, {2.4, 3.4, 3.2}, 2.0).both(),
+      ellipsoid({2.8, -4.6, 6.5}, {2.5, 3.0, 2.5}, 2).both(),
+      ellipsoid({4.1, -2.5, 6.3}, {1.9, 1.4, 1.9}, 2.4).both(),
+      capsule({4.7, -2.0, 5.4}, 0.8, {5.9, -1.4, 1.2}, 0.7, 2.8).both(),
       // Temples.
       ellipsoid({8.9, 2.0, 4.6}, {1.9, 2.8, 3.0}, 2).cut().both(),
       // Brow ridge and glabella.
       capsule({0.9, 1.7, 8.35}, 0.85, {4.4, 2.0, 6.9}, 0.85, 1.5).both(),
       ellipsoid({0, 1.8, 8.4}, {1.4, 1.2, 1.0}, 1.5),
       // Eye sockets, then the lids around the eyeballs and the fold above them.
-      ellipsoid({3.1, -0.1, 9.0}, {1.8, 1.15, 1.75}, 1.2).cut().both(),
-      ellipsoid({3.15, 0, 7.0}, {1.58, 1.58, 1.58}, 0.6).both(),
+      ellipsoid({3.1, -0.1, 9.0}, {1.8, 1.15, 1.75}, 1.4).cut().both(),
+      ellipsoid({3.15, 0, 7.0}, {1.58, 1.58, 1.58}, 0.9).both(),
       // Nose: bridge, sides, tip, wings, septum.
       capsule({0, 0.9, 8.5}, 0.65, {0, -3.2, 11.1}, 0.72, 1.2),
-      capsule({0.75, -0.4, 7.9}, 0.6, {0.95, -3.6, 9.6}, 0.6, 1.2).both(),
+      capsule({0.75, -0.4, 7.9}, 0.6, {0.95, -3.6, 9.6}, 0.6, 1.6).both(),
       ellipsoid({0, -3.7, 11.45}, {0.9, 0.8, 0.9}, 0.8),
       ellipsoid({1.1, -4.1, 10.5}, {0.66, 0.62, 0.95}, 0.6).both(),
       capsule({0, -4.25, 11.5}, 0.35, {0, -4.75, 10.2}, 0.45, 0.5),
       // Lips; where they meet the blend is tight and leaves the line between them.
-      capsule({0.4, -6.42, 10.4}, 0.42, {1.3, -6.56, 10.1}, 0.37, 0.9).both(),
-      capsule({1.3, -6.56, 10.1}, 0.37, {2.5, -6.9, 9.2}, 0.25, 0.9).both(),
-      capsule({0, -7.42, 10.2}, 0.52, {1.1, -7.38, 9.95}, 0.46, 0.12).both(),
-      capsule({1.1, -7.38, 9.95}, 0.46, {2.4, -7.1, 9.2}, 0.22, 0.12).both(),
+      capsule({0.3, -6.48, 10.40}, 0.43, {1.0, -6.52, 10.28}, 0.42, 0.8).both(),
+      capsule({1.0, -6.52, 10.28}, 0.42, {1.8, -6.68, 9.80}, 0.33, 0.8).both(),
+      capsule({1.8, -6.68, 9.80}, 0.33, {2.6, -6.88, 9.15}, 0.2, 0.8).both(),
+      capsule({0, -7.43, 10.22}, 0.5, {0.8, -7.41, 10.12}, 0.48, 0.12).both(),
+      capsule({0.8, -7.41, 10.12}, 0.48, {1.6, -7.30, 9.75}, 0.36, 0.15).both(),
+      capsule({1.6, -7.30, 9.75}, 0.36, {2.5, -7.02, 9.15}, 0.2, 0.2).both(),
       ellipsoid({0, -8.0, 9.0}, {2.2, 0.7, 1.2}, 0.8),
       // Philtrum and the furrow above the chin.
       capsule({0, -5.2, 10.9}, 0.2, {0, -5.9, 11.1}, 0.25, 0.5).cut(),
@@ -62,11 +65,11 @@ HeadForm human_form() {
       {8, 1.0, 0.0, 6, 6, 14},       // brows
       {8, 3.6, -0.7, 32, 38, 38},    // hairline
   };
-  form.grid.columns = {{0, 0}, {6, 10}, {10, 39}, {5, 88}, {5, 122}, {8, 180}};
-  form.grid.eye = {6, 16, 31, 39};
-  form.grid.mouth = {0, 10, 13, 21};
-  form.grid.nostril = {2, 5, 22, 24};
-  form.grid.ear = {21, 26, 27, 37};
+  form.grid.columns = {{0, 0}, {8, 10}, {10, 39}, {5, 88}, {5, 122}, {8, 180}};
+  form.grid.eye = {8, 18, 31, 39};
+  form.grid.mouth = {0, 12, 13, 21};
+  form.grid.nostril = {3, 6, 22, 24};
+  form.grid.ear = {23, 28, 27, 37};
   return form;
 }
 
@@ -85,9 +88,9 @@ CharacterForm human_character() {
   CharacterForm form;
   form.name = "human";
   form.head = human_form();
-  form.upper_teeth.edge = -6.85;
-  form.lower_teeth.edge = -6.98;
-  form.lower_teeth.front = 9.15;
+  form.upper_teeth.edge = -7.15;
+  form.lower_teeth.edge = -7.0;
+  form.lower_teeth.front = 9.05;
   form.lower_teeth.width = 2.2;
   form.lower_teeth.height = -0.85;
   form.brows.line = {{1.0, 1.75, 9}, {2.1, 2.25, 9}, {3.3, 2.45, 8.5}, {4.3, 2.25, 8}, {5.1, 1.6, 7}};
@@ -101,7 +104,7 @@ CharacterForm human_character() {
   form.materials = {material("skin", 0.85f, 0.66f, 0.56f),   material("eye white", 0.92f, 0.91f, 0.89f),
                     material("iris", 0.24f, 0.38f, 0.46f),   material("pupil", 0.02f, 0.02f, 0.02f),
                     material("teeth", 0.93f, 0.90f, 0.83f),  material("gum", 0.68f, 0.36f, 0.36f),
-                    material("tongue", 0.72f, 0.38f, 0.38f), material("hair", 0.20f, 0.13f, 0.09f),
+                    material("tongue", 0.72f, 0.38f, 0.38f), material("hair", 0.13f, 0.10f, 0.08f),
                     material("mouth", 0.45f, 0.18f, 0.17f),  material("lips", 0.76f, 0.45f, 0.42f)};
   return form;
 }

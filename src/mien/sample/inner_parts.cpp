@@ -215,7 +215,7 @@ Mesh make_brows(const BrowForm& form, const Sculpt& sculpt) {
     const auto id = [&](int i, int j) { return ids[i * section + j % section]; };
     for (int i = 0; i < length; ++i)
       for (int j = 0; j < section; ++j)
-        out.face({id(i, j), id(i + 1, j), id(i + 1, j + 1), id(i, j + 1)}, side < 0);
+        out.face({id(i, j), id(i + 1, j), id(i + 1, j + 1), id(i, j + 1)}, side > 0);
     for (const int i : {0, length})
       for (int j = 0; j < section / 2 - 1; ++j)
         out.face({id(i, j), id(i, j + 1), id(i, section - 2 - j), id(i, section - 1 - j)},

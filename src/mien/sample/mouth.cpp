@@ -21,6 +21,8 @@ Vector3d lip_border_at(const MouthForm& mouth, bool upper, double t) {
   // The lip's height over the line, falling to nothing at the corner.
   const double fall = upper ? 1 - std::pow(across, 1.6) : 1 - std::pow(across, 2.2);
   p.y() += ((upper ? mouth.upper_border : mouth.lower_border) - mouth.line) * fall;
+  // Beyond the end of the line the border runs around the corner.
+  p.x() += 0.09 * mouth.width * std::pow(across, 8);
   // The bow: two peaks beside the middle.
   if (upper) p.y() -= mouth.bow * std::exp(-std::pow(across / 0.13, 2));
   return p;
@@ -59,7 +61,6 @@ void add_mouth(HalfHead& half, const HeadForm& form) {
     for (int a = 0; a < count; ++a) {
       const Vector3d line = lip_line_at(mouth, along(a)), edge = lip_border_at(mouth, a <= turn, along(a));
       ring[a] = edge + t * (line - edge) + Vector3d(0, 0, out);
-      if (a == turn) ring[a] = line + Vector3d(0.28 * (1 - t), 0, 0.1);
     }
   };
   between(0.33, 0.5);

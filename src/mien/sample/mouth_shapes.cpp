@@ -39,7 +39,9 @@ Field mouth_close(const HeadMesh& head, const FaceRegions& regions, const Field&
     const bool upper = slot * 2 < last;
     const Vector3d opening =
         upper ? Vector3d(jaw_open[partner] - jaw_open[v]) : Vector3d(jaw_open[v] - jaw_open[partner]);
-    field[v] = regions.lips[v] * (upper ? 0.35 : -0.65) * opening;
+    // Both lips go to one place: it leaves the teeth behind it alone.
+    const Vector3d meeting(0.35 * opening.x(), 0.33 * opening.y(), 0.1 * opening.z());
+    field[v] = regions.lips[v] * (upper ? meeting : Vector3d(meeting - opening));
   };
   for (const Loop& loop : head.half.mouth)
     for (int a = 0; a <= last; ++a) {
@@ -60,8 +62,8 @@ Field lips_gathered(const HeadMesh& head, const HeadForm& form, const FaceRegion
     const double w = std::max(around, 0.0) * (0.45 + 0.55 * regions.lips[v]);
     if (w <= 0) continue;
     const double across = std::min(1.0, std::abs(p.x()) / mouth.width);
-    const double side = regions.jaw[v] > 0.5 ? -1 : 1;
-    const double lip = std::abs(2 * regions.jaw[v] - 1);
+    const double side = regions.lower[v] > 0.5 ? -1 : 1;
+    const double lip = std::abs(2 * regions.lower[v] - 1);
     field[v] =
         w * Vector3d(-narrow * p.x() * (0.55 + 0.45 * across), side * lip * open * (1 - across * across),
                      forward * (0.6 + 0.4 * (1 - across)) + 0.9 * forward * across * across);

@@ -46,23 +46,30 @@ void add_nostril(HalfHead& half, const HeadForm& form) {
   Vector3d ahead(-std::sin(turn), 0, std::cos(turn));
   ahead = (ahead - ahead.dot(inward) * inward).normalized();
   const Vector3d outer = ahead.cross(-inward);
-  std::vector<Vector3d> ring(count);
-  const auto at = [&](double size, double deep) {
+  std::vector<Vector3d> ring(count), rim(count);
+  Vector3d middle = Vector3d::Zero();
+  const auto at = [&](double size) {
     for (int a = 0; a < count; ++a) {
       // The border starts at the septum and goes over the tip's side to the wing.
       const double angle = std::numbers::pi - 2 * std::numbers::pi * a / count;
       ring[a] = nostril.centre +
-                size * (std::cos(angle) * nostril.width * outer + std::sin(angle) * nostril.length * ahead) +
-                deep * inward;
+                size * (std::cos(angle) * nostril.width * outer + std::sin(angle) * nostril.length * ahead);
+      ring[a] = form.sculpt.project(ring[a], 8);
     }
   };
-  at(1.25, 0);
+  at(1.3);
   push_loop(half, half.nostril, ring, HalfHead::Hold::surface, 0.3);
-  at(1.0, 0);
+  at(1.0);
   push_loop(half, half.nostril, ring, HalfHead::Hold::surface, 0.45);
-  at(0.9, 0.25 * nostril.depth);
+  rim = ring;
+  for (const Vector3d& p : rim) middle += p / count;
+  const auto inside = [&](double size, double deep) {
+    for (int a = 0; a < count; ++a)
+      ring[a] = middle + size * (rim[a] - middle) + deep * nostril.depth * inward;
+  };
+  inside(0.92, 0.3);
   push_loop(half, half.nostril, ring, HalfHead::Hold::fixed, 0.6);
-  at(0.7, nostril.depth);
+  inside(0.6, 1.0);
   push_loop(half, half.nostril, ring, HalfHead::Hold::fixed, 0.8);
   close_loop(half, half.nostril.back());
 }

@@ -110,8 +110,8 @@ Rows skin_rows(const HeadMesh& head, const FaceRegions& regions, const std::vect
         share = lid_share(head, regions.left_eye[left], std::string_view(form.name) == "lidUpperLeft");
       } else {
         share = form.share * soft(head.points[v], form.at, form.reach);
-        if (form.takes == Takes::upper) share *= 1 - regions.jaw[v];
-        if (form.takes == Takes::lower) share *= regions.jaw[v];
+        if (form.takes == Takes::upper) share *= 1 - regions.lower[v];
+        if (form.takes == Takes::lower) share *= regions.lower[v];
       }
       if (share <= 0) continue;
       for (std::size_t other = 0; other < joints.size(); ++other) rows[other][v] *= 1 - share;

@@ -20,9 +20,10 @@ struct LoopPlace {
 struct FaceRegions {
   std::vector<LoopPlace> left_eye, mouth;  ///< #V each; a right-hand vertex has its twin's place in the
                                            ///< mouth, and none in the left eye
-  Weights jaw;   ///< 1 on what the jaw carries, 0 on the skull; between the lips it jumps
-  Weights neck;  ///< 1 on the neck, 0 on the head
-  Weights lips;  ///< 1 on the red of the lips and inside, fading out on the face
+  Weights jaw;    ///< 1 on what the jaw carries, 0 on the skull, one half at the corners of the mouth
+  Weights lower;  ///< like `jaw`, but upper and lower lip are told apart up to the corners
+  Weights neck;   ///< 1 on the neck, 0 on the head
+  Weights lips;   ///< 1 on the red of the lips and inside, fading out on the face
 };
 
 FaceRegions make_regions(const HeadMesh& head, const HeadForm& form);

@@ -39,10 +39,10 @@ struct MouthForm {
 };
 
 struct NostrilForm {
-  Vector3d centre = Vector3d(0.62, -4.5, 10.9);
-  Vector3d inward = Vector3d(0.05, 0.95, -0.3);  ///< from the opening into the nose
-  double length = 0.5, width = 0.26;             ///< half axes of the opening
-  double turn = 25;                              ///< of its long axis from straight ahead, towards the middle
+  Vector3d centre = Vector3d(0.62, -4.6, 10.75);
+  Vector3d inward = Vector3d(0.1, 0.95, -0.1);  ///< from the opening into the nose
+  double length = 0.46, width = 0.27;           ///< half axes of the opening
+  double turn = 25;                             ///< of its long axis from straight ahead, towards the middle
   double depth = 0.8;
 };
 
@@ -50,8 +50,8 @@ struct EarForm {
   Vector3d centre = Vector3d(6.9, -1.4, -0.8);           ///< of the root on the head
   double root_height = 2.1, root_width = 0.75;           ///< half axes of the root
   double tilt = 12;                                      ///< top backwards
-  double flare = 28;                                     ///< of the ear's plane from the head's side
-  double up = 3.0, down = 3.0, back = 2.1, ahead = 0.9;  ///< reach of the outline from the root's centre
+  double flare = 24;                                     ///< of the ear's plane from the head's side
+  double up = 3.0, down = 3.1, back = 2.5, ahead = 1.0;  ///< reach of the outline from the root's centre
   double point = 0;                                      ///< how far the tip is drawn out up and back
   double stand = 0.7;                                    ///< how far the rim stands off the head
   double rim = 0.3;                                      ///< thickness of the rim
