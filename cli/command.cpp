@@ -34,7 +34,7 @@ Progress progress_bar(const Common& common) {
 
 void print_result(const Common& common, const std::string& text, const nlohmann::json& result) {
   if (common.json)
-    fmt::print("{}\n", result.dump(1));
+    fmt::print("{}\n", result.dump(1, ' ', false, nlohmann::json::error_handler_t::replace));
   else if (!common.quiet)
     fmt::print("{}", text);
 }

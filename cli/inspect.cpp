@@ -1,10 +1,153 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+#include <set>
+
 #include "command.h"
+#include "mien/character/validate.h"
+#include "mien/io/load.h"
 
 namespace mien::cli {
+namespace {
+
+using nlohmann::json;
+
+/// The most influences that one vertex of the part has.
+int most_influences(const SkinWeights& skin) {
+  int most = 0;
+  for (std::size_t v = 0; v + 1 < skin.offsets.size(); ++v)
+    most = std::max(most, skin.offsets[v + 1] - skin.offsets[v]);
+  return most;
+}
+
+json describe_part(const Character& character, int index) {
+  const Part& part = character.parts[index];
+  std::size_t triangles = 0, quads = 0;
+  for (std::size_t f = 0; f < part.mesh.faces.size(); ++f) {
+    triangles += part.mesh.faces[f].size() == 3;
+    quads += part.mesh.faces[f].size() == 4;
+  }
+  std::size_t shapes = 0;
+  for (const Shape& shape : character.shapes)
+    shapes += std::any_of(shape.parts.begin(), shape.parts.end(),
+                          [&](const PartDelta& d) { return d.part == index; });
+  const Box box = bounding_box(part.mesh.positions);
+  return {{"name", part.name},
+          {"vertices", part.mesh.vertex_count()},
+          {"faces", part.mesh.faces.size()},
+          {"triangles", triangles},
+          {"quads", quads},
+          {"ngons", part.mesh.faces.size() - triangles - quads},
+          {"uv_sets", part.mesh.uvs.size()},
+          {"groups", part.mesh.groups.size()},
+          {"shapes", shapes},
+          {"skinned", part.skin >= 0},
+          {"influences", most_influences(part.skin_weights)},
+          {"box", {{box.low[0], box.low[1], box.low[2]}, {box.high[0], box.high[1], box.high[2]}}}};
+}
+
+json describe_clip(const Clip& clip) {
+  std::size_t keys = 0;
+  for (const Channel& channel : clip.channels) keys += channel.times.size();
+  return {
+      {"name", clip.name}, {"seconds", clip.duration()}, {"channels", clip.channels.size()}, {"keys", keys}};
+}
+
+json describe(const std::string& file, const Character& character) {
+  json result = {{"file", file},
+                 {"parts", json::array()},
+                 {"shapes", json::array()},
+                 {"joints", json::array()},
+                 {"clips", json::array()},
+                 {"materials", json::array()},
+                 {"problems", json::array()}};
+  std::size_t vertices = 0, faces = 0;
+  int influences = 0;
+  for (std::size_t p = 0; p < character.parts.size(); ++p) {
+    result["parts"].push_back(describe_part(character, static_cast<int>(p)));
+    vertices += character.parts[p].mesh.vertex_count();
+    faces += character.parts[p].mesh.faces.size();
+    influences = std::max(influences, most_influences(character.parts[p].skin_weights));
+  }
+  for (const Shape& shape : character.shapes) result["shapes"].push_back(shape.name);
+  std::set<int> joints;
+  for (const Skin& skin : character.skins)
+    for (const int joint : skin.joints)
+      if (joint >= 0 && joint < static_cast<int>(character.nodes.size()) && joints.insert(joint).second)
+        result["joints"].push_back(character.nodes[joint].name);
+  for (const Clip& clip : character.clips) result["clips"].push_back(describe_clip(clip));
+  for (const Material& material : character.appearance.materials)
+    result["materials"].push_back(material.name);
+  for (const Problem& problem : validate(character))
+    result["problems"].push_back(
+        {{"place", problem.place}, {"text", problem.text}, {"remedy", problem.remedy}});
+  result["vertices"] = vertices;
+  result["faces"] = faces;
+  result["influences"] = influences;
+  result["nodes"] = character.nodes.size();
+  result["landmarks"] = character.landmarks.size();
+  result["curves"] = character.curves.size();
+  result["images"] = character.appearance.images.size();
+  return result;
+}
+
+std::string joined(const json& names) {
+  std::string text;
+  for (const json& name : names) {
+    if (!text.empty()) text += ", ";
+    text += name.get<std::string>();
+  }
+  return text;
+}
+
+/// A table's cell: names of any length, numbers to the right.
+std::string part_rows(const json& parts) {
+  std::size_t width = 4;
+  for (const json& part : parts) width = std::max(width, part["name"].get_ref<const std::string&>().size());
+  std::string text = fmt::format("  {:<{}} {:>9} {:>9} {:>8} {:>4} {:>7} {:>11}\n", "part", width, "vertices",
+                                 "faces", "n-gons", "UVs", "shapes", "influences");
+  for (const json& part : parts)
+    text += fmt::format("  {:<{}} {:>9} {:>9} {:>8} {:>4} {:>7} {:>11}\n", part["name"].get<std::string>(),
+                        width, part["vertices"].get<int>(), part["faces"].get<int>(),
+                        part["quads"].get<int>() + part["ngons"].get<int>(), part["uv_sets"].get<int>(),
+                        part["shapes"].get<int>(), part["influences"].get<int>());
+  return text;
+}
+
+std::string as_text(const json& result) {
+  std::string text = result["file"].get<std::string>() + "\n" + part_rows(result["parts"]);
+  text += fmt::format("  shapes     {}{}\n", result["shapes"].size(),
+                      result["shapes"].empty() ? "" : ": " + joined(result["shapes"]));
+  text += fmt::format("  joints     {}{}\n", result["joints"].size(),
+                      result["joints"].empty() ? "" : ": " + joined(result["joints"]));
+  for (const json& clip : result["clips"])
+    text += fmt::format("  clip       {}: {:.3f} s, {} channels, {} keys\n", clip["name"].get<std::string>(),
+                        clip["seconds"].get<double>(), clip["channels"].get<int>(), clip["keys"].get<int>());
+  text += fmt::format("  landmarks  {}, curves {}\n", result["landmarks"].get<int>(),
+                      result["curves"].get<int>());
+  text += fmt::format("  materials  {}{}\n", result["materials"].size(),
+                      result["materials"].empty() ? "" : ": " + joined(result["materials"]));
+  for (const json& problem : result["problems"])
+    text += fmt::format("  problem    {}: {}; {}\n", problem["place"].get<std::string>(),
+                        problem["text"].get<std::string>(), problem["remedy"].get<std::string>());
+  if (result["problems"].empty()) text += "  problems   none\n";
+  return text;
+}
+
+}  // namespace
 
 void add_inspect(CLI::App& app, Common& common) {
-  (void)common;
-  app.add_subcommand("inspect", "");
+  auto file = std::make_shared<std::string>();
+  CLI::App* command = app.add_subcommand("inspect", "Say what is in a file, and what is wrong with it");
+  command->add_option("FILE", *file, "A .glb, .gltf or .obj")->required();
+  command->footer("Example: mien inspect head.glb --json");
+  command->callback([file, &common] {
+    LoadOptions options;
+    options.validate = false;
+    const json result = describe(*file, load(*file, options));
+    print_result(common, as_text(result), result);
+  });
 }
 
 }  // namespace mien::cli

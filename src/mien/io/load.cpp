@@ -29,7 +29,7 @@ Error unknown_format(const std::filesystem::path& path) {
 
 }  // namespace
 
-Character load(const std::filesystem::path& path) {
+Character load(const std::filesystem::path& path, const LoadOptions& options) {
   const std::string extension = lower_extension(path);
   Character character;
   if (extension == ".glb" || extension == ".gltf")
@@ -39,7 +39,7 @@ Character load(const std::filesystem::path& path) {
   else
     throw unknown_format(path);
   try {
-    require_valid(character);
+    if (options.validate) require_valid(character);
   } catch (const Error& error) {
     throw error.in_file(path.string());
   }
