@@ -57,6 +57,13 @@ void add_part(Character& character, const std::string& name, Mesh mesh) {
 
 }  // namespace
 
+Material plain_material(const char* name, float red, float green, float blue) {
+  Material material;
+  material.name = name;
+  material.base_color = {red, green, blue, 1};
+  return material;
+}
+
 BuiltCharacter build_character(const CharacterForm& form) {
   BuiltCharacter built;
   built.head = make_head(form.head);

@@ -2,7 +2,7 @@
 
 namespace mien::sample {
 
-Sculpt human_sculpt() {
+static Sculpt human_sculpt() {
   return Sculpt({
       // Skull.
       ellipsoid({0, 3.6, -0.7}, {7.4, 8.1, 9.2}, 1),
@@ -51,7 +51,7 @@ Sculpt human_sculpt() {
   });
 }
 
-HeadForm human_form() {
+static HeadForm human_form() {
   HeadForm form;
   form.sculpt = human_sculpt();
   form.grid.rows = {
@@ -73,17 +73,6 @@ HeadForm human_form() {
   return form;
 }
 
-namespace {
-
-Material material(const char* name, float r, float g, float b) {
-  Material out;
-  out.name = name;
-  out.base_color = {r, g, b, 1};
-  return out;
-}
-
-}  // namespace
-
 CharacterForm human_character() {
   CharacterForm form;
   form.name = "human";
@@ -101,11 +90,12 @@ CharacterForm human_character() {
   form.landmarks.brow = {{1.1, 1.9, 9.3}, {2.1, 2.4, 9.1}, {3.1, 2.6, 8.7}, {4.1, 2.4, 8.0}, {5.1, 1.7, 7.0}};
   form.landmarks.nose = {{0, 0.4, 9.2}, {0, -1.0, 10}, {0, -2.4, 11.2}, {0, -3.8, 12.4}};
   form.landmarks.base = {{0, -4.95, 10.7}, {0.75, -4.85, 10.6}, {1.5, -4.7, 10.3}};
-  form.materials = {material("skin", 0.85f, 0.66f, 0.56f),   material("eye white", 0.92f, 0.91f, 0.89f),
-                    material("iris", 0.24f, 0.38f, 0.46f),   material("pupil", 0.02f, 0.02f, 0.02f),
-                    material("teeth", 0.93f, 0.90f, 0.83f),  material("gum", 0.68f, 0.36f, 0.36f),
-                    material("tongue", 0.72f, 0.38f, 0.38f), material("hair", 0.13f, 0.10f, 0.08f),
-                    material("mouth", 0.45f, 0.18f, 0.17f),  material("lips", 0.76f, 0.45f, 0.42f)};
+  form.materials = {
+      plain_material("skin", 0.85f, 0.66f, 0.56f),   plain_material("eye white", 0.92f, 0.91f, 0.89f),
+      plain_material("iris", 0.24f, 0.38f, 0.46f),   plain_material("pupil", 0.02f, 0.02f, 0.02f),
+      plain_material("teeth", 0.93f, 0.90f, 0.83f),  plain_material("gum", 0.68f, 0.36f, 0.36f),
+      plain_material("tongue", 0.72f, 0.38f, 0.38f), plain_material("hair", 0.13f, 0.10f, 0.08f),
+      plain_material("mouth", 0.45f, 0.18f, 0.17f),  plain_material("lips", 0.76f, 0.45f, 0.42f)};
   return form;
 }
 

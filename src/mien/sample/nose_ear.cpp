@@ -95,7 +95,7 @@ void add_ear(HalfHead& half, const HeadForm& form) {
     const double width = (c > 0 ? ear.back * (0.78 + 0.3 * s - 0.12 * s * s) : ear.ahead * (0.8 + 0.2 * s));
     const double height = s > 0 ? ear.up : ear.down;
     double b = width * c, u = height * s;
-    const double tip = std::exp(-std::pow((angle - 0.3 * std::numbers::pi) / 0.45, 2));
+    const double tip = std::exp(-std::pow((angle - std::numbers::pi / 3) / 0.45, 2));
     u += ear.point * tip;
     b += 0.8 * ear.point * tip;
     return Vector2d(b, u);

@@ -96,7 +96,7 @@ SurfacePoint PointReader::read_position(const JsonObject& source, int part) {
 
 Json point_json(const SurfacePoint& point, const Character& character) {
   Json json = Json::object();
-  if (character.parts.size() > 1) json["part"] = character.parts[point.part].name;
+  if (point.part > 0) json["part"] = character.parts[point.part].name;
   if (point.face < 0) {
     json["vertex"] = point.vertex;
     return json;

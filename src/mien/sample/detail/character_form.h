@@ -28,6 +28,9 @@ struct CharacterForm {
   std::vector<Material> materials;  ///< by MaterialId
 };
 
+/// A material of one colour.
+Material plain_material(const char* name, float red, float green, float blue);
+
 CharacterForm human_character();
 CharacterForm cartoon_character();
 CharacterForm creature_character();

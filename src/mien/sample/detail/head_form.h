@@ -91,6 +91,4 @@ struct HeadForm {
   GridForm grid;
 };
 
-HeadForm human_form();
-
 }  // namespace mien::sample
