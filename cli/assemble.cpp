@@ -104,8 +104,7 @@ void add_assemble(CLI::App& app, Common& common) {
   auto arguments = std::make_shared<AssembleArguments>();
   CLI::App* command = app.add_subcommand("assemble", "Make a character from whole-face OBJs of one topology");
   command->add_option("FILES", arguments->inputs, "The neutral, then one file a shape; or a folder of them")
-      ->required()
-      ->check(CLI::ExistingPath);
+      ->required();
   command->add_option("-o,--output", arguments->output, "The character: .glb or .gltf")->required();
   command->add_option(
       "--neutral", arguments->neutral,
