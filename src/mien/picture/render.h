@@ -14,7 +14,8 @@
 
 namespace mien {
 
-/// A point drawn on the surface, with a label or none. Not drawn where the face hides it.
+/// A point drawn on the surface, with a label or none. Not drawn where the face hides it; a label that would cover
+/// another one is left out.
 struct Marker {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< model space
   std::string label;

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "mien/picture/detail/canvas.h"
 
@@ -57,15 +60,47 @@ void draw_line(const RayScene& scene, const Lens& lens, const Polyline& line, Ca
   flush();
 }
 
-void draw_marker(const RayScene& scene, const Lens& lens, const Marker& marker, Canvas& canvas) {
-  const Eigen::Vector3f point = in_scene(scene, marker.position);
-  if (!visible(scene, lens, point)) return;
-  const Eigen::Vector2d at = lens.project(point).head<2>().cast<double>();
-  const double radius = std::max(2.0, lens.height / 220.0);
-  canvas.dot(at, radius, marker.color);
-  if (marker.label.empty()) return;
-  const TextStyle style{.size = std::max(8.0, lens.height / 60.0)};
-  canvas.text_on_picture(marker.label, at + Eigen::Vector2d(1.6 * radius, -0.8 * radius), style);
+/// A label's box in pixels.
+struct Label {
+  double left = 0, top = 0, right = 0, bottom = 0;
+  bool overlaps(const Label& other) const {
+    return left < other.right && other.left < right && top < other.bottom && other.top < bottom;
+  }
+};
+
+/// Writes the label beside its dot, in the first of four places that is free; without one it is left out.
+void draw_label(const std::string& label, Eigen::Vector2d at, double radius, std::vector<Label>& taken,
+                Canvas& canvas) {
+  const TextStyle style{.size = std::clamp(radius * 3.2, 8.0, 14.0)};
+  const double width = canvas.text_width(label, style), gap = 1.5 * radius;
+  for (const Eigen::Vector2d corner :
+       {Eigen::Vector2d(gap, -0.3 * style.size), Eigen::Vector2d(gap, style.size),
+        Eigen::Vector2d(-gap - width, -0.3 * style.size), Eigen::Vector2d(-gap - width, style.size)}) {
+    const Eigen::Vector2d start = at + corner;
+    const Label box{start.x(), start.y() - 0.8 * style.size, start.x() + width, start.y() + 0.2 * style.size};
+    if (std::any_of(taken.begin(), taken.end(), [&](const Label& other) { return box.overlaps(other); }))
+      continue;
+    taken.push_back(box);
+    canvas.text_on_picture(label, start, style);
+    return;
+  }
+}
+
+void draw_markers(const RayScene& scene, const Lens& lens, const std::vector<Marker>& markers,
+                  Canvas& canvas) {
+  const double radius = std::max(2.0, lens.height / 260.0);
+  std::vector<std::pair<const Marker*, Eigen::Vector2d>> shown;
+  std::vector<Label> taken;
+  for (const Marker& marker : markers) {
+    const Eigen::Vector3f point = in_scene(scene, marker.position);
+    if (!visible(scene, lens, point)) continue;
+    const Eigen::Vector2d at = lens.project(point).head<2>().cast<double>();
+    shown.emplace_back(&marker, at);
+    taken.push_back({at.x() - radius, at.y() - radius, at.x() + radius, at.y() + radius});
+    canvas.dot(at, radius, marker.color);
+  }
+  for (const auto& [marker, at] : shown)
+    if (!marker->label.empty()) draw_label(marker->label, at, radius, taken, canvas);
 }
 
 std::string number(double value) {
@@ -100,7 +135,7 @@ void draw_overlay(const RayScene& scene, const Lens& lens, const RenderOptions& 
   if (options.markers.empty() && options.polylines.empty() && !legend) return;
   Canvas canvas(picture);
   for (const Polyline& line : options.polylines) draw_line(scene, lens, line, canvas);
-  for (const Marker& marker : options.markers) draw_marker(scene, lens, marker, canvas);
+  draw_markers(scene, lens, options.markers, canvas);
   if (legend) draw_legend(*options.map, picture, canvas);
   canvas.finish();
 }

@@ -30,7 +30,7 @@ using Vec = Eigen::Vector3f;
 constexpr int samples = 16;
 constexpr float key_radius = 0.16f;  // of the light's disc at distance one: penumbrae as of a softbox
 constexpr float offset = 2e-5f;      // rays start this far off the surface; scene units
-const Vec key_color(1.12f, 1.06f, 0.98f), sky_color(0.50f, 0.53f, 0.58f), fill_color(0.12f, 0.12f, 0.13f);
+const Vec key_color(1.08f, 1.02f, 0.94f), sky_color(0.45f, 0.48f, 0.52f), fill_color(0.12f, 0.12f, 0.13f);
 
 /// What a pixel gathers in the first pass.
 struct Gathered {
@@ -303,8 +303,8 @@ Vec with_bounces(float visible, const Vec& base) {
 }
 
 float display(float linear) {
-  // Straight up to 0.7, then a shoulder that never quite reaches white.
-  const float x = linear <= 0.7f ? linear : 0.7f + 0.3f * (1 - std::exp(-(linear - 0.7f) / 0.3f));
+  // Straight up to a half, then a shoulder that never quite reaches white: light skins keep their modelling.
+  const float x = linear <= 0.5f ? linear : 0.5f + 0.5f * (1 - std::exp(-(linear - 0.5f) / 0.5f));
   return x <= 0.0031308f ? 12.92f * x : 1.055f * std::pow(x, 1 / 2.4f) - 0.055f;
 }
 
