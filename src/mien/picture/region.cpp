@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cstdlib>
 #include <span>
 #include <string>
 
@@ -26,6 +27,7 @@ bool names_one(const std::string& name, std::span<const std::string_view> tokens
 
 struct Tokens {
   std::span<const std::string_view> landmarks, shapes, parts;
+  int ibug_first, ibug_last;  // of the 68 points of iBUG, from 1
 };
 
 constexpr std::array<std::string_view, 2> mouth_landmarks{"mouth", "lip"}, eye_landmarks{"eye", "lid"};
@@ -35,18 +37,25 @@ constexpr std::array<std::string_view, 2> mouth_parts{"teeth", "tongue"};
 constexpr std::array<std::string_view, 1> eye_parts{"eye"};
 
 Tokens tokens_of(Region region) {
-  if (region == Region::mouth) return {mouth_landmarks, mouth_shapes, mouth_parts};
-  return {eye_landmarks, eye_shapes, eye_parts};
+  if (region == Region::mouth) return {mouth_landmarks, mouth_shapes, mouth_parts, 49, 68};
+  return {eye_landmarks, eye_shapes, eye_parts, 37, 48};
 }
 
 bool is_brow(const std::string& name) {
   return lower(name).find("brow") != std::string::npos;
 }
 
+bool is_ibug(const std::string& name, const Tokens& tokens) {
+  if (name.rfind("ibug_", 0) != 0 || name.size() > 7) return false;
+  const int number = std::atoi(name.c_str() + 5);
+  return number >= tokens.ibug_first && number <= tokens.ibug_last;
+}
+
 Rows by_landmarks(const Character& character, const std::vector<Points>& posed, const Tokens& tokens) {
   Rows rows;
   for (const Landmark& landmark : character.landmarks)
-    if (names_one(landmark.name, tokens.landmarks) && !is_brow(landmark.name))
+    if (is_ibug(landmark.name, tokens) ||
+        (names_one(landmark.name, tokens.landmarks) && !is_brow(landmark.name)))
       rows.push_back(
           position_of(character.parts[landmark.at.part].mesh, posed[landmark.at.part], landmark.at));
   return rows;
@@ -56,7 +65,7 @@ void add_most_moved(const PartDelta& delta, const Points& positions, Rows& rows)
   const auto lengths = delta.deltas.rowwise().norm();
   const float most = delta.deltas.rows() > 0 ? lengths.maxCoeff() : 0;
   for (std::size_t i = 0; i < delta.vertices.size(); ++i)
-    if (lengths[static_cast<Eigen::Index>(i)] > 0.4f * most)
+    if (lengths[static_cast<Eigen::Index>(i)] > 0.65f * most)
       rows.push_back(positions.row(delta.vertices[i]).cast<double>());
 }
 
@@ -94,7 +103,7 @@ std::optional<Box> find_region(const Character& character, const std::vector<Poi
       box.low = box.low.cwiseMin(row);
       box.high = box.high.cwiseMax(row);
     }
-    const double room = 0.15 * box.diagonal();
+    const double room = 0.25 * box.diagonal();
     box.low.array() -= room;
     box.high.array() += room;
     return box;

@@ -10,7 +10,7 @@
 namespace mien::detail {
 
 struct Look {
-  Eigen::Vector3f albedo = Eigen::Vector3f(0.56f, 0.36f, 0.27f);  ///< linear RGB
+  Eigen::Vector3f albedo = Eigen::Vector3f(0.64f, 0.41f, 0.31f);  ///< linear RGB
   float gloss = 0.10f;                                            ///< strength of the highlight
   float sharpness = 14;                                           ///< its exponent
   bool visible = true;

@@ -73,7 +73,7 @@ void draw_label(const std::string& label, Eigen::Vector2d at, double radius, std
                 Canvas& canvas) {
   const TextStyle style{.size = std::clamp(radius * 3.2, 8.0, 14.0)};
   const double width = canvas.text_width(label, style), gap = 1.5 * radius;
-  for (const Eigen::Vector2d corner :
+  for (const Eigen::Vector2d& corner :
        {Eigen::Vector2d(gap, -0.3 * style.size), Eigen::Vector2d(gap, style.size),
         Eigen::Vector2d(-gap - width, -0.3 * style.size), Eigen::Vector2d(-gap - width, style.size)}) {
     const Eigen::Vector2d start = at + corner;
