@@ -1,10 +1,11 @@
+#include "mien/transfer/transfer.h"
+
 #include <fmt/format.h>
 
 #include "command.h"
 #include "mien/core/error.h"
 #include "mien/io/landmark_file.h"
 #include "mien/io/load.h"
-#include "mien/transfer/transfer.h"
 
 namespace mien::cli {
 namespace {
@@ -29,7 +30,8 @@ void read_exaggeration(const std::vector<std::string>& texts, TransferOptions& o
       used = 0;
     }
     if (used == 0 || used != number.size())
-      throw invalid_input("--exaggerate " + text, "is not a percentage", "PCT or NAME=PCT, such as 150 or jawOpen=120");
+      throw invalid_input("--exaggerate " + text, "is not a percentage",
+                          "PCT or NAME=PCT, such as 150 or jawOpen=120");
     if (equals == std::string::npos)
       options.exaggeration = percent / 100;
     else
@@ -78,14 +80,15 @@ std::string as_text(const TransferResult& result, const std::string& output) {
   const TransferReport& report = result.report;
   double seconds = 0;
   for (const StepTime& step : report.steps) seconds += step.seconds;
-  std::string text = fmt::format("{}: {} shapes, {} joints, {} clips on {} parts by {} landmarks, {:.2f} s\n", output,
-                                 result.character.shapes.size(),
+  std::string text = fmt::format("{}: {} shapes, {} joints, {} clips on {} parts by {} landmarks, {:.2f} s\n",
+                                 output, result.character.shapes.size(),
                                  result.character.skins.empty() ? 0 : result.character.skins[0].joints.size(),
                                  result.character.clips.size(), result.character.parts.size(),
                                  report.pairs.names.size(), seconds);
-  text += fmt::format("deltas: {} ({:.0f} % warp; contacts {:.2f} over {} shapes, stretch {:.3f}): {}\n",
-                      name_of(report.deltas.model), 100 * report.deltas.warp_share, report.deltas.contact_ratio,
-                      report.deltas.contact_shapes, report.deltas.stretch, report.deltas.reason);
+  text +=
+      fmt::format("deltas: {} ({:.0f} % warp; contacts {:.2f} over {} shapes, stretch {:.3f}): {}\n",
+                  name_of(report.deltas.model), 100 * report.deltas.warp_share, report.deltas.contact_ratio,
+                  report.deltas.contact_shapes, report.deltas.stretch, report.deltas.reason);
   for (const PieceReport& piece : report.pieces)
     text += fmt::format("piece {} ({}): moves with {}\n", piece.piece, piece.kind, piece.way);
   for (const TransferWarning& warning : report.warnings)
@@ -109,10 +112,14 @@ void add_transfer(CLI::App& app, Common& common) {
   CLI::App* command = app.add_subcommand("transfer", "Put the rig of SOURCE on TARGET");
   auto request = std::make_shared<Request>();
   TransferOptions& options = request->options;
-  command->add_option("source", request->source, "A character: shapes, joints or both (.glb, .gltf)")->required();
-  command->add_option("target", request->target, "A mesh or a character, whose rig is replaced (.obj, .glb, .gltf)")
+  command->add_option("source", request->source, "A character: shapes, joints or both (.glb, .gltf)")
       ->required();
-  command->add_option("-o,--output", request->output, "The target with the source's rig (.glb, .gltf)")->required();
+  command
+      ->add_option("target", request->target,
+                   "A mesh or a character, whose rig is replaced (.obj, .glb, .gltf)")
+      ->required();
+  command->add_option("-o,--output", request->output, "The target with the source's rig (.glb, .gltf)")
+      ->required();
   command->add_option("--source-landmarks", request->source_landmarks,
                       "Landmark file of the source (default: those inside the file)");
   command->add_option("--target-landmarks", request->target_landmarks,
@@ -131,10 +138,12 @@ void add_transfer(CLI::App& app, Common& common) {
       ->default_str("auto");
   command->add_option("--exaggerate", request->exaggerate,
                       "PCT for all shapes or NAME=PCT for one, in percent; repeatable (default: 100)");
-  command->add_option("--max-influences", options.max_influences, "Most joints a vertex; 0: as many as needed")
+  command
+      ->add_option("--max-influences", options.max_influences, "Most joints a vertex; 0: as many as needed")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
-  command->add_flag("--replace-uvs", options.replace_uvs, "Take the source's UVs even where the target has its own");
+  command->add_flag("--replace-uvs", options.replace_uvs,
+                    "Take the source's UVs even where the target has its own");
   command->add_flag("--compress", request->compress, "Write quantised, meshopt-compressed glTF");
   command->add_option("--report", request->report, "Folder for a page with pictures and the same as JSON");
   command->footer("Example:\n  mien transfer human.glb cartoon.glb -o cartoon-rigged.glb --report report");

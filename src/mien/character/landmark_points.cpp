@@ -35,7 +35,8 @@ std::vector<LandmarkPoint> sample_curve(const Character& character, const Landma
   std::vector<double> length{0};
   for (const SurfacePoint& at : curve.points) {
     corners.push_back(model_position(character, model, at));
-    if (corners.size() > 1) length.push_back(length.back() + (corners.back() - corners[corners.size() - 2]).norm());
+    if (corners.size() > 1)
+      length.push_back(length.back() + (corners.back() - corners[corners.size() - 2]).norm());
   }
   std::vector<LandmarkPoint> samples;
   for (int i = 0; i < count; ++i) {
@@ -45,7 +46,8 @@ std::vector<LandmarkPoint> sample_curve(const Character& character, const Landma
         length.size() - 1);
     const double span = length[after] - length[after - 1];
     const double t = span > 0 ? (wanted - length[after - 1]) / span : 0;
-    samples.push_back({curve.name + "." + std::to_string(i), corners[after - 1] + t * (corners[after] - corners[after - 1]),
+    samples.push_back({curve.name + "." + std::to_string(i),
+                       corners[after - 1] + t * (corners[after] - corners[after - 1]),
                        curve.points[t < 0.5 ? after - 1 : after]});
   }
   return samples;

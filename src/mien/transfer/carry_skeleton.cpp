@@ -10,7 +10,9 @@
 namespace mien {
 namespace {
 
-std::size_t at(int index) { return static_cast<std::size_t>(index); }
+std::size_t at(int index) {
+  return static_cast<std::size_t>(index);
+}
 
 /// A matrix as translation, rotation, scale; false where it shears and the three cannot say it.
 bool decompose(const Eigen::Matrix4d& matrix, Transform& transform) {
@@ -43,7 +45,8 @@ std::vector<char> nodes_to_carry(const Character& source, const std::vector<int>
     if (part.node >= 0) holds_part[at(part.node)] = 1;
   for (std::size_t n = 0; n < source.nodes.size(); ++n) {
     if (joint_of_node[n] < 0 && holds_part[n]) continue;
-    for (int a = static_cast<int>(n); a >= 0 && !carry[at(a)]; a = source.nodes[at(a)].parent) carry[at(a)] = 1;
+    for (int a = static_cast<int>(n); a >= 0 && !carry[at(a)]; a = source.nodes[at(a)].parent)
+      carry[at(a)] = 1;
   }
   return carry;
 }
@@ -130,7 +133,8 @@ CarriedSkeleton carry_skeleton(const Character& source, const SpaceMap& map, int
     const int parent = node.parent;
     node.parent = parent < 0 ? -1 : result.node_of[at(parent)];
     const Eigen::Matrix4d local =
-        parent < 0 ? carried_model[n] : Eigen::Matrix4d(carried_model[at(parent)].inverse() * carried_model[n]);
+        parent < 0 ? carried_model[n]
+                   : Eigen::Matrix4d(carried_model[at(parent)].inverse() * carried_model[n]);
     set_local(node, local);
     result.nodes.push_back(std::move(node));
   }
@@ -149,7 +153,8 @@ namespace {
 /// One key's values from the source's parent frame into the target's.
 class ChannelCarrier {
  public:
-  ChannelCarrier(const Node& from, const Node& to, double growth) : from_(from.rest), to_(to.rest), growth_(growth) {
+  ChannelCarrier(const Node& from, const Node& to, double growth)
+      : from_(from.rest), to_(to.rest), growth_(growth) {
     turn_ = to_.rotation * from_.rotation.inverse();
     // Without a rotation of the rest in between, the turn is what the frames have, not rounding.
     if (turn_.angularDistance(Eigen::Quaterniond::Identity()) < 1e-7) turn_.setIdentity();
@@ -218,9 +223,10 @@ Clip carry_clip(const Character& source, const Clip& clip, const CarriedSkeleton
         dropped.push_back("clip " + clip.name + ": node " + source.nodes[at(channel.node)].name);
         continue;
       }
-      carry_values(ChannelCarrier(source.nodes[at(channel.node)], skeleton.nodes[at(carried.node - first_node)],
-                                  skeleton.growth[at(channel.node)]),
-                   carried);
+      carry_values(
+          ChannelCarrier(source.nodes[at(channel.node)], skeleton.nodes[at(carried.node - first_node)],
+                         skeleton.growth[at(channel.node)]),
+          carried);
     }
     result.channels.push_back(std::move(carried));
   }

@@ -12,18 +12,19 @@ namespace mien {
 
 /// What the skeleton is carried by.
 struct SpaceMap {
-  std::function<Eigen::Vector3d(const Eigen::Vector3d&)> position;   ///< source model space to target model space
-  std::function<Eigen::Matrix3d(const Eigen::Vector3d&)> rotation;   ///< how directions turn there
-  std::function<double(const Eigen::Vector3d&)> scale;               ///< how lengths grow there
+  std::function<Eigen::Vector3d(const Eigen::Vector3d&)>
+      position;  ///< source model space to target model space
+  std::function<Eigen::Matrix3d(const Eigen::Vector3d&)> rotation;  ///< how directions turn there
+  std::function<double(const Eigen::Vector3d&)> scale;              ///< how lengths grow there
 };
 
 struct CarriedSkeleton {
-  std::vector<Node> nodes;         ///< to be appended to the target's nodes; parents count from `first_node`
-  std::vector<int> node_of;        ///< per source node: its index in the target, -1: not carried
-  Skin skin;                       ///< all source joints, inverse bind matrices for the target's model space
+  std::vector<Node> nodes;   ///< to be appended to the target's nodes; parents count from `first_node`
+  std::vector<int> node_of;  ///< per source node: its index in the target, -1: not carried
+  Skin skin;                 ///< all source joints, inverse bind matrices for the target's model space
   std::vector<std::vector<int>> skin_joint;  ///< per source skin, per joint: index into skin.joints
-  std::vector<int> joint_of_node;  ///< per source node: index into skin.joints, -1: not a joint
-  std::vector<double> growth;      ///< per source node: how much longer its translations become
+  std::vector<int> joint_of_node;            ///< per source node: index into skin.joints, -1: not a joint
+  std::vector<double> growth;                ///< per source node: how much longer its translations become
 };
 
 /// Places every joint of every skin, their ancestors and the nodes that hold no part. Hierarchy, names and local

@@ -13,9 +13,13 @@
 namespace mien {
 namespace {
 
-std::size_t at(int index) { return static_cast<std::size_t>(index); }
+std::size_t at(int index) {
+  return static_cast<std::size_t>(index);
+}
 
-Eigen::Vector3d row(const PointsD& points, int r) { return points.row(r).transpose(); }
+Eigen::Vector3d row(const PointsD& points, int r) {
+  return points.row(r).transpose();
+}
 
 constexpr double same_uv = 1e-5;
 /// A corner looks at no more triangles than this around its face's centre.
@@ -71,10 +75,12 @@ class CornerFinder {
         best = t;
       }
     }
-    Eigen::Vector3d weights = barycentric_on_plane(position, corner(best, 0), corner(best, 1), corner(best, 2));
+    Eigen::Vector3d weights =
+        barycentric_on_plane(position, corner(best, 0), corner(best, 1), corner(best, 2));
     // Beyond the chart's edge the last triangle goes on, but not further than its own size.
     if (weights.minCoeff() < -1 || weights.maxCoeff() > 2)
-      weights = closest_point_on_triangle(position, corner(best, 0), corner(best, 1), corner(best, 2)).barycentric;
+      weights =
+          closest_point_on_triangle(position, corner(best, 0), corner(best, 1), corner(best, 2)).barycentric;
     const auto& uv = source_.uvs[at(best)];
     return weights[0] * uv[0] + weights[1] * uv[1] + weights[2] * uv[2];
   }
@@ -86,7 +92,8 @@ class CornerFinder {
 };
 
 /// Per corner of all faces its UV; NaN where the guide has none.
-std::vector<Eigen::Vector2d> corner_uvs(const UvSource& source, const PointsD& positions, const Faces& faces) {
+std::vector<Eigen::Vector2d> corner_uvs(const UvSource& source, const PointsD& positions,
+                                        const Faces& faces) {
   const CornerFinder finder(source);
   const SurfaceQuery guide(source.guide, source.triangles);
   std::vector<Eigen::Vector2d> uvs(faces.corner_count(), Eigen::Vector2d::Constant(std::nan("")));
@@ -135,8 +142,8 @@ UvSet carry_uvs(const UvSource& source, const PointsD& positions, const Faces& f
     if (!uvs[c].allFinite()) continue;
     auto& known = rows_of[at(faces.corners()[c])];
     // Neighbouring faces of one chart find the same place up to rounding of the search.
-    const auto same = std::find_if(known.begin(), known.end(),
-                                   [&](int r) { return (rows[at(r)] - uvs[c]).norm() < 2e-3; });
+    const auto same =
+        std::find_if(known.begin(), known.end(), [&](int r) { return (rows[at(r)] - uvs[c]).norm() < 2e-3; });
     if (same != known.end()) {
       result.corners[c] = *same;
       continue;

@@ -11,8 +11,8 @@ namespace mien {
 
 /// The source's skin with one UV triple a triangle.
 struct UvSource {
-  const PointsD& guide;        ///< #V: the source's skin on the target
-  const Triangles& triangles;  ///< #T x 3
+  const PointsD& guide;                             ///< #V: the source's skin on the target
+  const Triangles& triangles;                       ///< #T x 3
   std::vector<std::array<Eigen::Vector2d, 3>> uvs;  ///< #T, one a corner
   std::vector<char> has_uv;                         ///< #T
 };

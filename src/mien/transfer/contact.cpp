@@ -4,7 +4,6 @@
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
-
 #include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <cctype>
@@ -19,17 +18,19 @@
 namespace mien {
 namespace {
 
-constexpr double moving_share = 0.25;    // of a shape's largest displacement
-constexpr double least_gap = 0.017;      // neutral
+constexpr double moving_share = 0.25;  // of a shape's largest displacement
+constexpr double least_gap = 0.017;    // neutral
 constexpr double largest_gap = 0.25;
-constexpr double shrunk = 0.4;           // deformed gap over neutral gap
+constexpr double shrunk = 0.4;  // deformed gap over neutral gap
 constexpr double least_closed = 0.6;
-constexpr double air = 0.08;             // distance of the gap's middle from the surface, of the gap
+constexpr double air = 0.08;  // distance of the gap's middle from the surface, of the gap
 constexpr std::size_t least_pairs = 5, most_pairs = 80, most_seeds = 500;
 constexpr int least_shapes = 5;
 constexpr double jacobian_radius = 0.095, stretch_radius = 0.3, lid_radius = 0.12;
 
-Eigen::Vector3d row(const PointsD& points, int r) { return points.row(r).transpose(); }
+Eigen::Vector3d row(const PointsD& points, int r) {
+  return points.row(r).transpose();
+}
 
 double median(std::vector<double> values) {
   if (values.empty()) return 0;
@@ -42,7 +43,8 @@ double median(std::vector<double> values) {
 class Grid {
  public:
   Grid(const PointsD& points, double cell) : points_(points), cell_(cell) {
-    for (Eigen::Index v = 0; v < points.rows(); ++v) cells_[key(index(points.row(v)))].push_back(static_cast<int>(v));
+    for (Eigen::Index v = 0; v < points.rows(); ++v)
+      cells_[key(index(points.row(v)))].push_back(static_cast<int>(v));
   }
   template <class Visit>
   void near(const Eigen::Vector3d& point, const Visit& visit) const {
@@ -61,7 +63,8 @@ class Grid {
     return (p.transpose() / cell_).array().floor().cast<int>();
   }
   static std::int64_t key(const Eigen::Array3i& i) {
-    return ((static_cast<std::int64_t>(i[0]) & 0x1fffff) << 42) | ((static_cast<std::int64_t>(i[1]) & 0x1fffff) << 21) |
+    return ((static_cast<std::int64_t>(i[0]) & 0x1fffff) << 42) |
+           ((static_cast<std::int64_t>(i[1]) & 0x1fffff) << 21) |
            (static_cast<std::int64_t>(i[2]) & 0x1fffff);
   }
   const PointsD& points_;
@@ -88,12 +91,15 @@ class LocalAffine {
         ((from_.rowwise() - at.transpose()).rowwise().squaredNorm().array() / (-2 * radius * radius)).exp();
     const double sum = weight.sum();
     if (!(sum > 1e-12)) return Eigen::Matrix3d::Identity();
-    const Eigen::RowVector3d a_mean = weight.transpose() * from_ / sum, b_mean = weight.transpose() * to_ / sum;
+    const Eigen::RowVector3d a_mean = weight.transpose() * from_ / sum,
+                             b_mean = weight.transpose() * to_ / sum;
     const PointsD a = from_.rowwise() - a_mean, b = to_.rowwise() - b_mean;
-    const Eigen::Matrix3d aa = a.transpose() * weight.asDiagonal() * a, ba = b.transpose() * weight.asDiagonal() * a;
+    const Eigen::Matrix3d aa = a.transpose() * weight.asDiagonal() * a,
+                          ba = b.transpose() * weight.asDiagonal() * a;
     const double pull = ridge * aa.trace() / 3;
     const double scale = ba.trace() / aa.trace();
-    return (ba + pull * scale * Eigen::Matrix3d::Identity()) * (aa + pull * Eigen::Matrix3d::Identity()).inverse();
+    return (ba + pull * scale * Eigen::Matrix3d::Identity()) *
+           (aa + pull * Eigen::Matrix3d::Identity()).inverse();
   }
 
  private:
@@ -103,8 +109,8 @@ class LocalAffine {
 bool speaks_of_lids(std::string name) {
   for (char& c : name) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   const auto has = [&](const char* word) { return name.find(word) != std::string::npos; };
-  return (has("blink") || has("lid") || has("wink") || has("clos") || has("eye")) && !has("mouth") && !has("lip") &&
-         !has("jaw") && !has("slide");
+  return (has("blink") || has("lid") || has("wink") || has("clos") || has("eye")) && !has("mouth") &&
+         !has("lip") && !has("jaw") && !has("slide");
 }
 
 }  // namespace
@@ -115,9 +121,10 @@ struct ContactModel::State {
   PointsD guide;
   double unit;
   std::vector<std::string> names;
-  std::vector<std::vector<ContactPair>> pairs;     // per shape
-  std::vector<std::vector<PointsD>> pair_deltas;   // per shape: turned displacements of a (first) and b (second)
-  Eigen::VectorXd motion;                          // #V: largest displacement over all shapes, target units
+  std::vector<std::vector<ContactPair>> pairs;  // per shape
+  std::vector<std::vector<PointsD>>
+      pair_deltas;         // per shape: turned displacements of a (first) and b (second)
+  Eigen::VectorXd motion;  // #V: largest displacement over all shapes, target units
 };
 
 ContactModel::ContactModel(const Surface& source, const Registration& registration, const DeltaMaps& maps)
@@ -140,8 +147,8 @@ std::vector<int> moving_rows(const PointsD& deltas) {
   return some;
 }
 
-std::vector<ContactPair> find_pairs(const PointsD& positions, const PointsD& deltas, const SurfaceQuery& surface,
-                                    double unit) {
+std::vector<ContactPair> find_pairs(const PointsD& positions, const PointsD& deltas,
+                                    const SurfaceQuery& surface, double unit) {
   std::vector<ContactPair> found;
   if (!(deltas.cwiseAbs().maxCoeff() > 1e-3 * unit)) return found;
   const PointsD deformed = positions + deltas;
@@ -196,7 +203,9 @@ void ContactModel::look_at_shapes(const std::vector<std::string>& names,
   for (const auto& m : motion) s.motion = s.motion.cwiseMax(m);
 }
 
-const std::vector<ContactPair>& ContactModel::pairs(std::size_t shape) const { return state_->pairs[shape]; }
+const std::vector<ContactPair>& ContactModel::pairs(std::size_t shape) const {
+  return state_->pairs[shape];
+}
 
 namespace {
 
@@ -220,6 +229,11 @@ DeltaDecision ContactModel::decide(DeltaModel wanted) const {
   const State& s = *state_;
   DeltaDecision decision;
   decision.model = wanted;
+  if (wanted != DeltaModel::automatic) {
+    decision.warp_share = wanted == DeltaModel::warp ? 1 : 0;
+    decision.reason = "asked for by name";
+    return decision;
+  }
   const LocalAffine affine(s.maps.aligned, s.guide);
   const double near = jacobian_radius * s.unit;
   Miss raw, jacobian;
@@ -262,19 +276,17 @@ DeltaDecision ContactModel::decide(DeltaModel wanted) const {
     decision.contact_ratio = std::max(jacobian.median / std::max(raw.median, 1e-9),
                                       jacobian.pairwise / std::max(raw.pairwise, 1e-9));
   const auto ramp = [](double x) { return std::clamp(x, 0.0, 1.0); };
-  const double share = decision.contact_shapes < least_shapes
-                           ? 0.0
-                           : ramp((0.75 - decision.contact_ratio) / 0.15) * ramp((decision.stretch - 0.015) / 0.015);
-  if (wanted != DeltaModel::automatic) {
-    decision.warp_share = wanted == DeltaModel::warp ? 1 : 0;
-    decision.reason = "asked for by name";
-  } else if (decision.contact_shapes < least_shapes) {
+  const double share = decision.contact_shapes < least_shapes ? 0.0
+                                                              : ramp((0.62 - decision.contact_ratio) / 0.15) *
+                                                                    ramp((decision.stretch - 0.03) / 0.015);
+  if (decision.contact_shapes < least_shapes) {
     decision.reason = "fewer than 5 source shapes close a gap, so contacts say nothing: smooth local scale";
   } else {
     decision.warp_share = share;
-    decision.reason = share <= 0   ? "the source's contacts are kept no better by following the map: smooth local scale"
-                      : share >= 1 ? "the source's contacts are kept by following the map: warp"
-                                   : "the source's contacts lie between the two: a blend of local scale and warp";
+    decision.reason =
+        share <= 0   ? "the source's contacts are kept no better by following the map: smooth local scale"
+        : share >= 1 ? "the source's contacts are kept by following the map: warp"
+                     : "the source's contacts lie between the two: a blend of local scale and warp";
   }
   return decision;
 }

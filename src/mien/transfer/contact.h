@@ -15,17 +15,18 @@ namespace mien {
 /// Why displacements are carried as they are.
 struct DeltaDecision {
   DeltaModel model = DeltaModel::local;  ///< as asked for
-  double warp_share = 0;      ///< t: 0 is all local, 1 all warp
-  double contact_ratio = 1;   ///< rho: how far a local Jacobian misses the source's contacts, against raw deltas
-  double stretch = 0;         ///< sigma: rms log stretch of the map, about its mean, where the face moves
-  int contact_shapes = 0;     ///< shapes of the source that close a gap
-  std::string reason;         ///< one sentence
+  double warp_share = 0;                 ///< t: 0 is all local, 1 all warp
+  double contact_ratio =
+      1;                   ///< rho: how far a local Jacobian misses the source's contacts, against raw deltas
+  double stretch = 0;      ///< sigma: rms log stretch of the map, about its mean, where the face moves
+  int contact_shapes = 0;  ///< shapes of the source that close a gap
+  std::string reason;      ///< one sentence
 };
 
 /// Two vertices of the source that a shape brings together across open air.
 struct ContactPair {
-  int a = 0, b = 0;     ///< rows of the source's skin
-  double closed = 0;    ///< fraction of the neutral gap, along it, that the shape closes
+  int a = 0, b = 0;   ///< rows of the source's skin
+  double closed = 0;  ///< fraction of the neutral gap, along it, that the shape closes
 };
 
 /// Contacts of all shapes and what follows from them. Lengths are relative to the face's size.
@@ -38,12 +39,13 @@ class ContactModel {
   /// neutral gap is above 0.017 and shrinks below 0.4 of itself, with air in the middle of the gap.
   ///   names   #S; delta(s) gives shape s's displacements at the skin's vertices, #V x 3, source model space
   ///   cost    about 10 ms a shape at 14,000 vertices
-  void look_at_shapes(const std::vector<std::string>& names, const std::function<PointsD(std::size_t)>& delta);
+  void look_at_shapes(const std::vector<std::string>& names,
+                      const std::function<PointsD(std::size_t)>& delta);
 
   const std::vector<ContactPair>& pairs(std::size_t shape) const;
 
-  /// The switch between local and warp: t = clamp((0.75 - rho) / 0.15) clamp((sigma - 0.015) / 0.015), 0 with fewer than
-  /// 5 shapes that touch. Where a smooth Jacobian keeps contacts that raw displacements lose, the target's proportions
+  /// The switch between local and warp: t = clamp((0.62 - rho) / 0.15) clamp((sigma - 0.03) / 0.015), 0 with fewer than
+  /// 5 shapes that touch. Needs look_at_shapes first unless a model is asked for by name. Where a smooth Jacobian keeps contacts that raw displacements lose, the target's proportions
   /// are a warp of the source's and motion should be warped too.
   DeltaDecision decide(DeltaModel wanted) const;
 

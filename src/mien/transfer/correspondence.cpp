@@ -14,7 +14,9 @@ namespace {
 /// Openness of outer skin; below `cavity` nothing but the inside of mouth, socket or nostril.
 constexpr double skin = 0.4, cavity = 0.15;
 
-bool same_kind(double a, double b) { return !((a < cavity && b > skin) || (a > skin && b < cavity)); }
+bool same_kind(double a, double b) {
+  return !((a < cavity && b > skin) || (a > skin && b < cavity));
+}
 
 PointsD triangle_normals(const PointsD& positions, const Triangles& triangles) {
   PointsD normals(triangles.rows(), 3);
@@ -48,7 +50,8 @@ std::vector<SourcePoint> find_correspondence(const Registration& registration, c
       const double open = registration.target_openness[row];
       SurfaceQuery::Hit hit =
           guide.closest(position, options.reach * registration.unit, [&](int t, const Eigen::Vector3d&) {
-            return guide_normals.row(t).dot(normal) > options.least_cosine && same_kind(open, triangle_openness(t));
+            return guide_normals.row(t).dot(normal) > options.least_cosine &&
+                   same_kind(open, triangle_openness(t));
           });
       points[v].accepted = hit.triangle >= 0;
       if (!points[v].accepted) hit = guide.closest(position);
@@ -108,8 +111,8 @@ AttributeCarrier::~AttributeCarrier() = default;
 AttributeCarrier::AttributeCarrier(AttributeCarrier&&) noexcept = default;
 
 Eigen::MatrixXd AttributeCarrier::operator()(const Eigen::MatrixXd& values) const {
-  Eigen::MatrixXd carried = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(state_->correspondence.size()),
-                                                  values.cols());
+  Eigen::MatrixXd carried =
+      Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(state_->correspondence.size()), values.cols());
   for (std::size_t v = 0; v < state_->correspondence.size(); ++v) {
     const SourcePoint& point = state_->correspondence[v];
     for (int k = 0; k < 3; ++k)
@@ -151,7 +154,11 @@ Eigen::SparseMatrix<double, Eigen::RowMajor> AttributeCarrier::operator()(
   return carried;
 }
 
-const std::vector<int>& AttributeCarrier::filled() const { return state_->filled; }
-const std::vector<SourcePoint>& AttributeCarrier::correspondence() const { return state_->correspondence; }
+const std::vector<int>& AttributeCarrier::filled() const {
+  return state_->filled;
+}
+const std::vector<SourcePoint>& AttributeCarrier::correspondence() const {
+  return state_->correspondence;
+}
 
 }  // namespace mien

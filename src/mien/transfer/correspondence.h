@@ -14,8 +14,9 @@ namespace mien {
 struct SourcePoint {
   int triangle = -1;
   Eigen::Vector3d barycentric = Eigen::Vector3d::Zero();
-  double distance = 0;    ///< from the target vertex to the guide, target units
-  bool accepted = false;  ///< false: the gates found no trustworthy place; attributes are filled in from around it
+  double distance = 0;  ///< from the target vertex to the guide, target units
+  bool accepted =
+      false;  ///< false: the gates found no trustworthy place; attributes are filled in from around it
 };
 
 struct CorrespondenceOptions {
@@ -28,7 +29,8 @@ struct CorrespondenceOptions {
 ///   returns  #V of the target
 ///   cost     one gated closest point a vertex
 std::vector<SourcePoint> find_correspondence(const Registration& registration, const Surface& source,
-                                             const Surface& target, const CorrespondenceOptions& options = {});
+                                             const Surface& target,
+                                             const CorrespondenceOptions& options = {});
 
 /// Carries per-vertex attributes from the source's vertices to the target's: barycentric where the correspondence is
 /// accepted, harmonic (cotangent Laplacian of the target) in between. Linear; constants stay constant, so skin weights

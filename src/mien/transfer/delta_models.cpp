@@ -12,12 +12,18 @@ namespace mien {
 
 std::string_view name_of(DeltaModel model) {
   switch (model) {
-    case DeltaModel::automatic: return "auto";
-    case DeltaModel::local: return "local";
-    case DeltaModel::raw: return "raw";
-    case DeltaModel::copy: return "copy";
-    case DeltaModel::warp: return "warp";
-    case DeltaModel::thesis: return "thesis";
+    case DeltaModel::automatic:
+      return "auto";
+    case DeltaModel::local:
+      return "local";
+    case DeltaModel::raw:
+      return "raw";
+    case DeltaModel::copy:
+      return "copy";
+    case DeltaModel::warp:
+      return "warp";
+    case DeltaModel::thesis:
+      return "thesis";
   }
   return "auto";
 }
@@ -56,7 +62,8 @@ PointsD through_spline(const ThinPlateSpline& spline, const PointsD& positions, 
   }
   const PointsD change = spline(to) - spline(from);
   PointsD result = PointsD::Zero(deltas.rows(), 3);
-  for (Eigen::Index i = 0; i < from.rows(); ++i) result.row(moving[static_cast<std::size_t>(i)]) = change.row(i);
+  for (Eigen::Index i = 0; i < from.rows(); ++i)
+    result.row(moving[static_cast<std::size_t>(i)]) = change.row(i);
   return result;
 }
 
@@ -67,12 +74,18 @@ PointsD carry_deltas(const DeltaMaps& maps, DeltaModel model, double warp_share,
   const auto local = [&] { return PointsD(maps.scale.asDiagonal() * turned); };
   const auto warp = [&] { return through_spline(*maps.dense, maps.aligned, turned); };
   switch (model) {
-    case DeltaModel::raw: return turned;
-    case DeltaModel::copy: return turned / maps.similarity.scale;
-    case DeltaModel::local: return local();
-    case DeltaModel::warp: return warp();
-    case DeltaModel::thesis: return through_spline(*maps.landmarks, maps.positions, deltas);
-    case DeltaModel::automatic: break;
+    case DeltaModel::raw:
+      return turned;
+    case DeltaModel::copy:
+      return turned / maps.similarity.scale;
+    case DeltaModel::local:
+      return local();
+    case DeltaModel::warp:
+      return warp();
+    case DeltaModel::thesis:
+      return through_spline(*maps.landmarks, maps.positions, deltas);
+    case DeltaModel::automatic:
+      break;
   }
   if (warp_share <= 0) return local();
   if (warp_share >= 1) return warp();
@@ -101,8 +114,9 @@ ThinPlateSpline dense_spline(const PointsD& aligned, const PointsD& guide, const
   const double diagonal = (aligned.colwise().maxCoeff() - aligned.colwise().minCoeff()).norm();
   std::vector<Eigen::RowVector3d> from, to;
   const auto add = [&](const Eigen::RowVector3d& a, const Eigen::RowVector3d& b) {
-    const bool near = std::any_of(from.begin(), from.end(),
-                                  [&](const Eigen::RowVector3d& other) { return (other - a).norm() < 1e-3 * diagonal; });
+    const bool near = std::any_of(from.begin(), from.end(), [&](const Eigen::RowVector3d& other) {
+      return (other - a).norm() < 1e-3 * diagonal;
+    });
     if (near) return;
     from.push_back(a);
     to.push_back(b);

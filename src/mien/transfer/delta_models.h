@@ -28,7 +28,8 @@ std::string_view name_of(DeltaModel model);
 /// s = sqrt(u1 / u0), (M + radius^2 L) u_k = areas_k, on the aligned source; 1 where nothing is known.
 ///   aligned  #V x 3: the source after the similarity; guide #V x 3; radius in their units
 ///   cost     one sparse factorisation, about 0.08 s at 14,000 vertices
-Eigen::VectorXd local_scale(const PointsD& aligned, const PointsD& guide, const Triangles& triangles, double radius);
+Eigen::VectorXd local_scale(const PointsD& aligned, const PointsD& guide, const Triangles& triangles,
+                            double radius);
 
 /// A spline from the aligned source to the guide through the landmarks and `samples` farthest-point vertices.
 ///   landmarks_from, landmarks_to  #L x 3 in the same frames; diagonal smoothing 1e-3 of the box
@@ -40,7 +41,7 @@ struct DeltaMaps {
   PointsD positions;  ///< #V x 3 source skin, source model space
   PointsD aligned;    ///< #V x 3 after the similarity
   Similarity similarity;
-  Eigen::VectorXd scale;             ///< #V: local_scale; used by local
+  Eigen::VectorXd scale;                       ///< #V: local_scale; used by local
   const ThinPlateSpline* dense = nullptr;      ///< aligned -> target; used by warp
   const ThinPlateSpline* landmarks = nullptr;  ///< source -> target; used by thesis
 };

@@ -26,14 +26,15 @@ std::string some_names(const std::vector<std::string>& names) {
   return names.size() > 4 ? text + ", ..." : text;
 }
 
-void require_spread(const std::vector<std::string>& names, const PointsD& positions, const std::string& side) {
+void require_spread(const std::vector<std::string>& names, const PointsD& positions,
+                    const std::string& side) {
   const double diagonal = (positions.colwise().maxCoeff() - positions.colwise().minCoeff()).norm();
   for (Eigen::Index i = 0; i < positions.rows(); ++i)
     for (Eigen::Index j = 0; j < i; ++j)
       if ((positions.row(i) - positions.row(j)).norm() <= 1e-6 * diagonal)
         throw invalid_input(side + " landmarks",
-                            names[static_cast<std::size_t>(j)] + " and " + names[static_cast<std::size_t>(i)] +
-                                " are at the same place",
+                            names[static_cast<std::size_t>(j)] + " and " +
+                                names[static_cast<std::size_t>(i)] + " are at the same place",
                             "two different places, or one of them left out");
   const PointsD centred = positions.rowwise() - positions.colwise().mean();
   const Eigen::JacobiSVD<Eigen::MatrixXd> svd(centred);
@@ -44,8 +45,12 @@ void require_spread(const std::vector<std::string>& names, const PointsD& positi
 
 }  // namespace
 
-PointsD LandmarkPairs::source_positions() const { return positions_of(source); }
-PointsD LandmarkPairs::target_positions() const { return positions_of(target); }
+PointsD LandmarkPairs::source_positions() const {
+  return positions_of(source);
+}
+PointsD LandmarkPairs::target_positions() const {
+  return positions_of(target);
+}
 
 LandmarkPairs pair_landmarks(const Character& source, const Character& target) {
   LandmarkPairs pairs;
@@ -66,12 +71,14 @@ LandmarkPairs pair_landmarks(const Character& source, const Character& target) {
       pairs.only_source.push_back(curve.name);
       continue;
     }
-    const auto from = sample_curve(source, curve, curve.count), to = sample_curve(target, *other, curve.count);
+    const auto from = sample_curve(source, curve, curve.count),
+               to = sample_curve(target, *other, curve.count);
     for (std::size_t i = 0; i < from.size(); ++i) {
       // A sample on a landmark (a curve that starts at one) says nothing new and would make the spline singular.
       const auto taken = [&](const std::vector<LandmarkPoint>& points, const LandmarkPoint& sample) {
-        return std::any_of(points.begin(), points.end(),
-                           [&](const LandmarkPoint& p) { return (p.position - sample.position).norm() == 0; });
+        return std::any_of(points.begin(), points.end(), [&](const LandmarkPoint& p) {
+          return (p.position - sample.position).norm() == 0;
+        });
       };
       if (taken(pairs.source, from[i]) || taken(pairs.target, to[i])) continue;
       pairs.names.push_back(from[i].name);
@@ -85,11 +92,11 @@ LandmarkPairs pair_landmarks(const Character& source, const Character& target) {
     if (find_named(source.curves, curve.name) == source.curves.end()) pairs.only_target.push_back(curve.name);
 
   if (pairs.names.size() < 4)
-    throw invalid_input("landmarks",
-                        std::to_string(pairs.names.size()) + " of the source's " +
-                            std::to_string(source_points.size()) + " have a partner of the same name among the target's " +
-                            std::to_string(target_points.size()),
-                        "4 or more names that both sides have");
+    throw invalid_input(
+        "landmarks",
+        std::to_string(pairs.names.size()) + " of the source's " + std::to_string(source_points.size()) +
+            " have a partner of the same name among the target's " + std::to_string(target_points.size()),
+        "4 or more names that both sides have");
   require_spread(pairs.names, pairs.source_positions(), "source");
   require_spread(pairs.names, pairs.target_positions(), "target");
   return pairs;

@@ -10,10 +10,10 @@
 namespace mien {
 
 struct LandmarkPairs {
-  std::vector<std::string> names;                    ///< #L, in the source's order; curve samples after landmarks
-  std::vector<LandmarkPoint> source, target;         ///< #L
+  std::vector<std::string> names;             ///< #L, in the source's order; curve samples after landmarks
+  std::vector<LandmarkPoint> source, target;  ///< #L
   std::vector<std::string> only_source, only_target;  ///< names left out, in their character's order
-  PointsD source_positions() const;                  ///< #L x 3, model space
+  PointsD source_positions() const;                   ///< #L x 3, model space
   PointsD target_positions() const;
 };
 

@@ -8,6 +8,7 @@
 #include "mien/geometry/openness.h"
 #include "mien/geometry/thin_plate_spline.h"
 #include "mien/transfer/detail/face_size.h"
+#include "mien/transfer/detail/feature_curves.h"
 #include "mien/transfer/detail/matching.h"
 
 namespace mien {
@@ -16,26 +17,30 @@ namespace {
 struct Stage {
   double stiffness, landmarks;
 };
+/// Weight of one openness level in one direction, while the stiffness is at least `curves_until`: lid and lip lines say
+/// where features are, not where each vertex of a margin belongs.
+constexpr double curve_weight = 0.033, curves_until = 0.06;
+
 /// From the whole face's proportions down to features of a few edges.
-constexpr std::array<Stage, 11> schedule{{{10, .1},
-                                          {3, .1},
-                                          {1, .1},
-                                          {.3, .1},
-                                          {.1, .03},
-                                          {.03, .01},
-                                          {.01, .003},
-                                          {.003, .001},
-                                          {.001, 0},
+constexpr std::array<Stage, 11> schedule{{{3, .5},
+                                          {1, .5},
+                                          {.3, .5},
+                                          {.1, .5},
+                                          {.03, .15},
+                                          {.01, .05},
+                                          {.003, .015},
+                                          {.001, .005},
                                           {3e-4, 0},
-                                          {1e-4, 0}}};
+                                          {1e-4, 0},
+                                          {3e-5, 0}}};
 
 Eigen::VectorXd normalised_areas(const Surface& surface) {
   const Eigen::VectorXd areas = vertex_areas(surface.positions, surface.triangles);
   return areas / areas.sum();
 }
 
-void add_landmark_wishes(const std::vector<SurfaceQuery::Hit>& at, const Triangles& triangles, const PointsD& goals,
-                         double weight, std::vector<detail::Wish>& wishes) {
+void add_landmark_wishes(const std::vector<SurfaceQuery::Hit>& at, const Triangles& triangles,
+                         const PointsD& goals, double weight, std::vector<detail::Wish>& wishes) {
   if (weight <= 0) return;
   for (std::size_t i = 0; i < at.size(); ++i) {
     detail::Wish wish;
@@ -63,7 +68,15 @@ Registration register_surfaces(const Surface& source, const Surface& target, con
 
   result.source_openness = openness(source.positions, source.triangles);
   result.target_openness = openness(target.positions, target.triangles);
-  const detail::MatchSurface fixed(fixed_points, target.triangles, result.target_openness, normalised_areas(target));
+  const detail::MatchSurface fixed(fixed_points, target.triangles, result.target_openness,
+                                   normalised_areas(target));
+
+  std::vector<detail::CurvePiece> source_curves, target_curves;
+  if (options.feature_curves) {
+    source_curves = detail::feature_curves(source, result.source_openness);
+    target_curves = detail::feature_curves(target, result.target_openness);
+  }
+  const Surface fixed_surface{fixed_points, target.triangles};
 
   const ThinPlateSpline spline(source_landmarks, goals, {options.smoothing, -1});
   const PointsD start = spline(source.positions);
@@ -78,8 +91,13 @@ Registration register_surfaces(const Surface& source, const Surface& target, con
     report_progress(options.progress, "registering", static_cast<double>(s) / schedule.size());
     const detail::MatchSurface moving(start + u, source.triangles, result.source_openness, solver.masses());
     std::vector<detail::Wish> wishes = detail::match_both_ways(moving, fixed, {});
-    add_landmark_wishes(landmark_hits, source.triangles, goals, options.landmark_trust * schedule[s].landmarks / 68,
-                        wishes);
+    add_landmark_wishes(landmark_hits, source.triangles, goals,
+                        options.landmark_trust * schedule[s].landmarks / 68, wishes);
+    if (schedule[s].stiffness >= curves_until) {
+      const auto pulls = detail::match_curves(source_curves, {start + u, source.triangles}, target_curves,
+                                              fixed_surface, curve_weight);
+      wishes.insert(wishes.end(), pulls.begin(), pulls.end());
+    }
     u = solver.solve(schedule[s].stiffness, wishes, u);
   }
   result.guide = ((start + u) * result.unit).rowwise() + centre;

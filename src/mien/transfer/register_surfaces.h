@@ -12,7 +12,7 @@ namespace mien {
 
 /// One connected or several connected skins: no inner parts.
 struct Surface {
-  PointsD positions;    ///< #V x 3
+  PointsD positions;  ///< #V x 3
   Triangles triangles;
 };
 
@@ -30,13 +30,13 @@ struct RegistrationOptions {
 struct Registration {
   PointsD guide;          ///< #V source vertices on the target
   Similarity similarity;  ///< the landmarks' best rotation, scale and translation, source to target
-  double unit = 1;        ///< the face's size in the target's units, the length that all limits are relative to
+  double unit = 1;  ///< the face's size in the target's units, the length that all limits are relative to
   Eigen::VectorXd source_openness, target_openness;  ///< #V, see geometry/openness.h
 };
 
 /// Non-rigid registration by a bi-Laplacian prior on the displacement from the spline's start, its stiffness falling
 /// over eleven stages; closest points both ways with gates on normal, distance, border and openness; point-to-plane
-/// with a tenth of tangential pull; landmarks as priors that fade.
+/// with a third of tangential pull; landmarks as priors that fade.
 ///   source_landmarks, target_landmarks  #L x 3, pairs by row, on or near the surfaces
 ///   throws  invalid_input: what ThinPlateSpline and fit_similarity refuse; surfaces without triangles
 ///   cost    about 1.5 s for 14,000 vertices on either side, one core

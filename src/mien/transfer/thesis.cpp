@@ -21,8 +21,8 @@ std::vector<SurfaceQuery::Hit> closest_points(const PointsD& points, const Point
 
 }  // namespace
 
-Registration thesis_registration(const Surface& source, const Surface& target, const PointsD& source_landmarks,
-                                 const PointsD& target_landmarks) {
+Registration thesis_registration(const Surface& source, const Surface& target,
+                                 const PointsD& source_landmarks, const PointsD& target_landmarks) {
   Registration result;
   result.similarity = fit_similarity(source_landmarks, target_landmarks);
   result.unit = detail::face_size(target_landmarks, target.positions);

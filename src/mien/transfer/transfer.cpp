@@ -23,12 +23,14 @@
 namespace mien {
 namespace {
 
-std::size_t at(int index) { return static_cast<std::size_t>(index); }
+std::size_t at(int index) {
+  return static_cast<std::size_t>(index);
+}
 
 /// Smaller displacements are sculpting noise, relative to the face's size.
 constexpr double least_delta = 1e-5;
 /// Radius over which areas are compared for the local scale, relative to the face's size.
-constexpr double scale_radius = 0.15;
+constexpr double scale_radius = 0.2;
 
 /// One transfer on its way: each step reads what the steps before left and adds its own.
 class Run {
@@ -104,11 +106,14 @@ void Run::check_request() const {
   if (source_.shapes.empty() && source_.skins.empty())
     throw invalid_input("source", "has neither shapes nor joints: there is no rig to transfer",
                         "a character with shapes, joints or both (`mien assemble` makes one of OBJ files)");
-  if (!std::isfinite(options_.exaggeration)) throw invalid_input("exaggeration", "is not a number", "a percentage");
+  if (!std::isfinite(options_.exaggeration))
+    throw invalid_input("exaggeration", "is not a number", "a percentage");
   for (const auto& [name, value] : options_.shape_exaggeration) {
     if (find_shape(source_, name) < 0)
-      throw invalid_input("exaggeration of " + name, "the source has no such shape", "a name that `mien inspect` lists");
-    if (!std::isfinite(value)) throw invalid_input("exaggeration of " + name, "is not a number", "a percentage");
+      throw invalid_input("exaggeration of " + name, "the source has no such shape",
+                          "a name that `mien inspect` lists");
+    if (!std::isfinite(value))
+      throw invalid_input("exaggeration of " + name, "is not a number", "a percentage");
   }
 }
 
@@ -126,7 +131,8 @@ void Run::read_surfaces() {
                           "landmarks on the face's skin");
   const auto& left = report_.pairs.only_source;
   if (!left.empty())
-    warn(std::to_string(left.size()) + " source landmarks have no partner on the target (" + left.front() + " ...)",
+    warn(std::to_string(left.size()) + " source landmarks have no partner on the target (" + left.front() +
+             " ...)",
          "nothing, if that is meant; name them alike on both sides otherwise");
 }
 
@@ -138,7 +144,8 @@ void Run::find_guide() {
   } else {
     RegistrationOptions registration;
     registration.progress = options_.progress;
-    registration_ = register_surfaces(source_surface_.surface, target_surface_.surface, from, to, registration);
+    registration_ =
+        register_surfaces(source_surface_.surface, target_surface_.surface, from, to, registration);
   }
   report_.similarity = registration_.similarity;
   report_.unit = registration_.unit;
@@ -154,30 +161,38 @@ void Run::find_guide() {
 void Run::find_places() {
   const bool thesis = options_.method == TransferMethod::thesis;
   const Surface &source = source_surface_.surface, &target = target_surface_.surface;
-  carrier_ = std::make_unique<AttributeCarrier>(
-      thesis ? thesis_correspondence(registration_, source, target) : find_correspondence(registration_, source, target),
-      source, target);
+  carrier_ = std::make_unique<AttributeCarrier>(thesis ? thesis_correspondence(registration_, source, target)
+                                                       : find_correspondence(registration_, source, target),
+                                                source, target);
   warped_source_ = thesis ? (*landmark_spline_)(source_pool_.positions)
                           : (*dense_)(registration_.similarity(source_pool_.positions));
   for (std::size_t r = 0; r < source_surface_.vertices.size(); ++r)
     warped_source_.row(source_surface_.vertices[r]) = registration_.guide.row(static_cast<Eigen::Index>(r));
   plans_ = detail::plan_pieces(piece_input());
   for (const detail::PiecePlan& plan : plans_)
-    report_.pieces.push_back({target_pool_.piece_name[at(plan.piece)], std::string(detail::name_of(plan.kind)),
+    report_.pieces.push_back({target_pool_.piece_name[at(plan.piece)],
+                              std::string(detail::name_of(plan.kind)),
                               std::string(detail::name_of(plan.way))});
   report_maps();
 }
 
 detail::PieceInput Run::piece_input() const {
-  return {source_pool_,    target_pool_,           source_skin_,      target_skin_, target_surface_,
-          warped_source_, registration_.similarity, registration_.unit};
+  return {source_pool_,
+          target_pool_,
+          source_skin_,
+          target_skin_,
+          target_surface_,
+          warped_source_,
+          registration_.similarity,
+          registration_.unit};
 }
 
 void Run::report_maps() {
   for (std::size_t p = 0; p < source_.parts.size(); ++p) {
     Points positions(source_.parts[p].mesh.positions.rows(), 3);
     for (Eigen::Index v = 0; v < positions.rows(); ++v)
-      positions.row(v) = warped_source_.row(source_pool_.welded[p][static_cast<std::size_t>(v)]).cast<float>();
+      positions.row(v) =
+          warped_source_.row(source_pool_.welded[p][static_cast<std::size_t>(v)]).cast<float>();
     report_.guide.push_back(std::move(positions));
   }
   std::vector<char> filled(carrier_->correspondence().size(), 0);
@@ -196,8 +211,10 @@ void Run::report_maps() {
   }
   const double share = static_cast<double>(carrier_->filled().size()) / static_cast<double>(filled.size());
   if (share > 0.1)
-    warn("the guide reaches only " + std::to_string(static_cast<int>(100 * (1 - share))) + " % of the target's skin",
-         "look at the error map; landmarks on the part that the source lacks do not help, more on the face may");
+    warn("the guide reaches only " + std::to_string(static_cast<int>(100 * (1 - share))) +
+             " % of the target's skin",
+         "look at the error map; landmarks on the part that the source lacks do not help, more on the face "
+         "may");
 }
 
 void Run::place_joints() {
@@ -207,7 +224,9 @@ void Run::place_joints() {
   if (thesis) {
     map.position = [&](const Eigen::Vector3d& x) { return (*landmark_spline_)(x); };
     map.rotation = [&](const Eigen::Vector3d& x) { return closest_rotation(landmark_spline_->jacobian(x)); };
-    map.scale = [&](const Eigen::Vector3d& x) { return std::cbrt(std::abs(landmark_spline_->jacobian(x).determinant())); };
+    map.scale = [&](const Eigen::Vector3d& x) {
+      return std::cbrt(std::abs(landmark_spline_->jacobian(x).determinant()));
+    };
   } else {
     map.position = [&](const Eigen::Vector3d& x) { return (*dense_)(similarity(x)); };
     map.rotation = [&](const Eigen::Vector3d&) { return similarity.rotation; };
@@ -225,7 +244,8 @@ void Run::place_joints() {
   result_.nodes.insert(result_.nodes.end(), skeleton_.nodes.begin(), skeleton_.nodes.end());
   result_.skins.push_back(skeleton_.skin);
   for (detail::PiecePlan& plan : plans_) {
-    const Eigen::Vector3d centre = target_pool_.positions(plan.vertices, Eigen::all).colwise().mean().transpose();
+    const Eigen::Vector3d centre =
+        target_pool_.positions(plan.vertices, Eigen::all).colwise().mean().transpose();
     plan.growth = map.scale(similarity.inverse()(centre));
   }
 }
@@ -262,8 +282,9 @@ void Run::carry_shapes() {
   if (options_.method == TransferMethod::thesis && model == DeltaModel::automatic) model = DeltaModel::thesis;
   std::vector<std::string> names;
   for (const Shape& shape : source_.shapes) names.push_back(shape.name);
-  const bool close_lids = options_.close_lids && options_.method != TransferMethod::thesis &&
-                          (model == DeltaModel::automatic || model == DeltaModel::local || model == DeltaModel::warp);
+  const bool close_lids =
+      options_.close_lids && options_.method != TransferMethod::thesis &&
+      (model == DeltaModel::automatic || model == DeltaModel::local || model == DeltaModel::warp);
   if (close_lids || model == DeltaModel::automatic) contact.look_at_shapes(names, skin_delta);
   report_.deltas = contact.decide(model);
 
@@ -287,8 +308,8 @@ void Run::carry_shapes() {
         target.row(plan.vertices[i]) = piece.row(static_cast<Eigen::Index>(i));
     }
     count_flips(s, source_rows, skin);
-    result_.shapes[s] = detail::shape_of_target(shape, target_pool_, result_, target,
-                                                least_delta * registration_.unit);
+    result_.shapes[s] =
+        detail::shape_of_target(shape, target_pool_, result_, target, least_delta * registration_.unit);
   });
 }
 
@@ -313,13 +334,15 @@ void Run::carry_weights() {
   const auto append = [&](const WeightMatrix& rows, const std::vector<int>& vertices) {
     for (Eigen::Index r = 0; r < rows.outerSize(); ++r)
       for (WeightMatrix::InnerIterator entry(rows, r); entry; ++entry)
-        entries.emplace_back(vertices[static_cast<std::size_t>(r)], static_cast<int>(entry.col()), entry.value());
+        entries.emplace_back(vertices[static_cast<std::size_t>(r)], static_cast<int>(entry.col()),
+                             entry.value());
   };
   append(skin, target_surface_.vertices);
   const detail::PieceInput pieces = piece_input();
   for (const detail::PiecePlan& plan : plans_)
-    append(limit_influences(detail::carry_piece_weights(pieces, plan, source, skin, static_cast<int>(head_joint)),
-                            options_.max_influences),
+    append(limit_influences(
+               detail::carry_piece_weights(pieces, plan, source, skin, static_cast<int>(head_joint)),
+               options_.max_influences),
            plan.vertices);
   WeightMatrix all(target_pool_.positions.rows(), joints);
   all.setFromTriplets(entries.begin(), entries.end());
@@ -335,7 +358,8 @@ void Run::carry_texture_coordinates() {
   for (std::size_t p = 0; p < result_.parts.size(); ++p) {
     Mesh& mesh = result_.parts[p].mesh;
     if (!mesh.uvs.empty() && !options_.replace_uvs) continue;
-    detail::assign_uvs(*source, registration_.guide, target_pool_, target_surface_, static_cast<int>(p), mesh);
+    detail::assign_uvs(*source, registration_.guide, target_pool_, target_surface_, static_cast<int>(p),
+                       mesh);
   }
 }
 
@@ -346,7 +370,8 @@ void Run::carry_clips() {
   for (const Clip& clip : source_.clips)
     result_.clips.push_back(carry_clip(source_, clip, skeleton_, shape_of, dropped));
   if (!dropped.empty())
-    warn(std::to_string(dropped.size()) + " channels animate what the target does not get (" + dropped.front() + " ...)",
+    warn(std::to_string(dropped.size()) + " channels animate what the target does not get (" +
+             dropped.front() + " ...)",
          "skin these parts to joints on the source to have them animated on the target");
 }
 

@@ -21,10 +21,10 @@ enum class TransferMethod {
 struct TransferOptions {
   TransferMethod method = TransferMethod::registration;
   DeltaModel deltas = DeltaModel::automatic;
-  double exaggeration = 1;                          ///< all shapes' displacements times this (thesis 5.4.2)
+  double exaggeration = 1;                           ///< all shapes' displacements times this (thesis 5.4.2)
   std::map<std::string, double> shape_exaggeration;  ///< by name, times the one above
-  int max_influences = 0;                           ///< skin weights a vertex; 0: as many as the source needs
-  bool close_lids = true;  ///< let shapes that close a lid on the source close it on the target
+  int max_influences = 0;    ///< skin weights a vertex; 0: as many as the source needs
+  bool close_lids = true;    ///< let shapes that close a lid on the source close it on the target
   bool replace_uvs = false;  ///< take the source's UVs even where the target has its own
   Progress progress;
 };
@@ -45,11 +45,14 @@ struct PieceReport {
 
 struct TransferReport {
   LandmarkPairs pairs;
-  Similarity similarity;          ///< source to target by the landmarks
-  double unit = 1;                ///< the face's size in target units
-  std::vector<Points> guide;      ///< per source part, #V: where its vertices come to lie on the target, model space
-  std::vector<Eigen::VectorXf> distance;  ///< per target part, #V: guide to target, of the face's size; 0 off the skin
-  std::vector<Eigen::VectorXf> filled;    ///< per target part, #V: 1 where attributes were filled in from around
+  Similarity similarity;  ///< source to target by the landmarks
+  double unit = 1;        ///< the face's size in target units
+  std::vector<Points>
+      guide;  ///< per source part, #V: where its vertices come to lie on the target, model space
+  std::vector<Eigen::VectorXf>
+      distance;  ///< per target part, #V: guide to target, of the face's size; 0 off the skin
+  std::vector<Eigen::VectorXf>
+      filled;                     ///< per target part, #V: 1 where attributes were filled in from around
   std::vector<int> flips;         ///< per shape: triangles of the target's skin that turn over at full weight
   std::vector<int> source_flips;  ///< per shape: the same on the source's skin
   DeltaDecision deltas;
@@ -73,6 +76,7 @@ struct TransferResult {
 ///           delta_models.h and contact.h, joints through a dense spline, skin weights along the correspondence
 ///   cost    2 to 4 s for 27,000 vertices and 57 shapes on one core; memory about 40 bytes x vertices x shapes
 /// Same input, same bytes, at any thread count.
-TransferResult transfer(const Character& source, const Character& target, const TransferOptions& options = {});
+TransferResult transfer(const Character& source, const Character& target,
+                        const TransferOptions& options = {});
 
 }  // namespace mien

@@ -6,7 +6,9 @@
 namespace mien::detail {
 namespace {
 
-std::size_t at(int index) { return static_cast<std::size_t>(index); }
+std::size_t at(int index) {
+  return static_cast<std::size_t>(index);
+}
 
 void bake_into_model_space(Part& part, const Eigen::Matrix4d& matrix) {
   if (matrix.isIdentity(0)) return;
@@ -76,13 +78,14 @@ Character bare_target(const Character& target, const Pool& pool, bool skinned) {
   return result;
 }
 
-Shape shape_of_target(const Shape& source, const Pool& pool, const Character& character, const PointsD& displacement,
-                      double least) {
+Shape shape_of_target(const Shape& source, const Pool& pool, const Character& character,
+                      const PointsD& displacement, double least) {
   Shape shape{source.name, {}, source.rest};
   for (std::size_t p = 0; p < character.parts.size(); ++p) {
     const bool in_node = character.parts[p].skin < 0 && character.skins.empty();
-    const Eigen::Matrix3d to_part =
-        in_node ? Eigen::Matrix3d(pool.part_matrix[p].topLeftCorner<3, 3>().inverse()) : Eigen::Matrix3d::Identity();
+    const Eigen::Matrix3d to_part = in_node
+                                        ? Eigen::Matrix3d(pool.part_matrix[p].topLeftCorner<3, 3>().inverse())
+                                        : Eigen::Matrix3d::Identity();
     PartDelta delta;
     delta.part = static_cast<int>(p);
     const auto& welded = pool.welded[p];
@@ -164,7 +167,8 @@ std::optional<SkinUvs> skin_uvs(const Character& source, const Pool& pool, const
   }
   for (const int t : skin.triangles) {
     const Mesh& mesh = source.parts[at(pool.triangle_part[at(t)])].mesh;
-    std::array<Eigen::Vector2d, 3> uv{Eigen::Vector2d::Zero(), Eigen::Vector2d::Zero(), Eigen::Vector2d::Zero()};
+    std::array<Eigen::Vector2d, 3> uv{Eigen::Vector2d::Zero(), Eigen::Vector2d::Zero(),
+                                      Eigen::Vector2d::Zero()};
     bool has = !mesh.uvs.empty();
     const std::size_t face = at(pool.triangle_face[at(t)]);
     const std::array<int, 3> corner{0, fan_of[at(t)] + 1, fan_of[at(t)] + 2};
@@ -183,8 +187,8 @@ std::optional<SkinUvs> skin_uvs(const Character& source, const Pool& pool, const
   return result;
 }
 
-void assign_uvs(const SkinUvs& source, const PointsD& guide, const Pool& pool, const PoolSurface& skin, int part,
-                Mesh& mesh) {
+void assign_uvs(const SkinUvs& source, const PointsD& guide, const Pool& pool, const PoolSurface& skin,
+                int part, Mesh& mesh) {
   Faces skin_faces;
   std::vector<char> is_skin(mesh.faces.size(), 0);
   bool any = false;
@@ -197,7 +201,8 @@ void assign_uvs(const SkinUvs& source, const PointsD& guide, const Pool& pool, c
   PointsD positions(mesh.positions.rows(), 3);
   for (Eigen::Index v = 0; v < positions.rows(); ++v)
     positions.row(v) = pool.positions.row(pool.welded[at(part)][static_cast<std::size_t>(v)]);
-  const UvSet carried = carry_uvs({guide, source.triangles, source.uvs, source.has_uv}, positions, skin_faces);
+  const UvSet carried =
+      carry_uvs({guide, source.triangles, source.uvs, source.has_uv}, positions, skin_faces);
   UvSet set;
   set.coordinates = carried.coordinates;
   set.corners.assign(mesh.faces.corner_count(), -1);

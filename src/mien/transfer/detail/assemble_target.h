@@ -19,8 +19,8 @@ Character bare_target(const Character& target, const Pool& pool, bool skinned);
 
 /// A shape of `character` (the bare target) from displacements of pooled vertices (#W x 3, model space); those shorter
 /// than `least` are left out. Every part that holds the displaced gets an entry, the first part always.
-Shape shape_of_target(const Shape& source, const Pool& pool, const Character& character, const PointsD& displacement,
-                      double least);
+Shape shape_of_target(const Shape& source, const Pool& pool, const Character& character,
+                      const PointsD& displacement, double least);
 
 /// The number of triangles whose normal turns by more than a right angle under `deltas` (#V x 3).
 int flipped_triangles(const Surface& surface, const PointsD& deltas);
@@ -40,7 +40,7 @@ std::optional<SkinUvs> skin_uvs(const Character& source, const Pool& pool, const
 
 /// Gives part `part`'s skin faces UVs from the guide; faces off the skin get none. Leaves the mesh alone when no face
 /// of it is skin.
-void assign_uvs(const SkinUvs& source, const PointsD& guide, const Pool& pool, const PoolSurface& skin, int part,
-                Mesh& mesh);
+void assign_uvs(const SkinUvs& source, const PointsD& guide, const Pool& pool, const PoolSurface& skin,
+                int part, Mesh& mesh);
 
 }  // namespace mien::detail

@@ -21,7 +21,9 @@ void add_to_entry(SparseMatrix& matrix, int row, int column, double value) {
   matrix.valuePtr()[found - matrix.innerIndexPtr()] += value;
 }
 
-double mean_weight(const Wish& wish) { return wish.across + (wish.along - wish.across) / 3; }
+double mean_weight(const Wish& wish) {
+  return wish.across + (wish.along - wish.across) / 3;
+}
 
 /// W r of a wish.
 Eigen::RowVector3d pull(const Wish& wish, const Eigen::RowVector3d& r) {
@@ -37,7 +39,9 @@ void scatter(const Wish& wish, const Eigen::RowVector3d& value, PointsD& field) 
   for (int k = 0; k < 3; ++k) field.row(wish.vertices[k]) += wish.weights[k] * value;
 }
 
-double inner(const PointsD& a, const PointsD& b) { return a.cwiseProduct(b).sum(); }
+double inner(const PointsD& a, const PointsD& b) {
+  return a.cwiseProduct(b).sum();
+}
 
 }  // namespace
 
@@ -60,7 +64,8 @@ DisplacementSolver::DisplacementSolver(const PointsD& rest, const Triangles& tri
 
 DisplacementSolver::~DisplacementSolver() = default;
 
-PointsD DisplacementSolver::solve(double stiffness, const std::vector<Wish>& wishes, const PointsD& start) const {
+PointsD DisplacementSolver::solve(double stiffness, const std::vector<Wish>& wishes,
+                                  const PointsD& start) const {
   const double bend = stiffness * bending_unit;
   SparseMatrix scalar = bending_ * bend;
   // Vertices that nothing pulls are held by a thousandth of a mean wish, so that the matrix stays definite.
@@ -86,7 +91,9 @@ PointsD DisplacementSolver::solve(double stiffness, const std::vector<Wish>& wis
     for (const Wish& wish : wishes) scatter(wish, pull(wish, gather(wish, u)), result);
     return result;
   };
-  const auto precondition = [&](const PointsD& r) { return PointsD(factor_->cholesky.solve(Eigen::MatrixXd(r))); };
+  const auto precondition = [&](const PointsD& r) {
+    return PointsD(factor_->cholesky.solve(Eigen::MatrixXd(r)));
+  };
 
   PointsD right = PointsD::Zero(rest_.rows(), 3);
   for (const Wish& wish : wishes)

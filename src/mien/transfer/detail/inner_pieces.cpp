@@ -15,7 +15,9 @@
 namespace mien::detail {
 namespace {
 
-std::size_t at(int index) { return static_cast<std::size_t>(index); }
+std::size_t at(int index) {
+  return static_cast<std::size_t>(index);
+}
 
 std::string lower(std::string text) {
   for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
@@ -23,7 +25,8 @@ std::string lower(std::string text) {
 }
 
 bool has(const std::string& text, std::initializer_list<const char*> words) {
-  return std::any_of(words.begin(), words.end(), [&](const char* w) { return text.find(w) != std::string::npos; });
+  return std::any_of(words.begin(), words.end(),
+                     [&](const char* w) { return text.find(w) != std::string::npos; });
 }
 
 /// +1 upper, -1 lower, 0 not said.
@@ -34,7 +37,8 @@ int row_from_name(const std::string& name) {
 
 PointsD rows(const PointsD& points, const std::vector<int>& which) {
   PointsD result(static_cast<Eigen::Index>(which.size()), 3);
-  for (std::size_t i = 0; i < which.size(); ++i) result.row(static_cast<Eigen::Index>(i)) = points.row(which[i]);
+  for (std::size_t i = 0; i < which.size(); ++i)
+    result.row(static_cast<Eigen::Index>(i)) = points.row(which[i]);
   return result;
 }
 
@@ -49,7 +53,8 @@ std::vector<int> vertices_of(const Pool& pool, int piece) {
 bool is_ball(const PointsD& points, double unit) {
   const Eigen::RowVector3d low = points.colwise().minCoeff(), high = points.colwise().maxCoeff();
   const Eigen::RowVector3d size = high - low;
-  if (points.rows() < 20 || size.maxCoeff() > 0.5 * unit || size.minCoeff() < 0.6 * size.maxCoeff()) return false;
+  if (points.rows() < 20 || size.maxCoeff() > 0.5 * unit || size.minCoeff() < 0.6 * size.maxCoeff())
+    return false;
   const Eigen::VectorXd radius = (points.rowwise() - (low + high) / 2).rowwise().norm();
   return radius.minCoeff() > 0.7 * radius.maxCoeff();
 }
@@ -93,7 +98,8 @@ bool find_donors(const PieceInput& in, const std::vector<char>& donors, PiecePla
     plan.barycentric.push_back(hit.barycentric);
     ++votes[in.source.piece[at(in.source.triangles(plan.triangle.back(), 0))]];
   }
-  std::nth_element(distance.begin(), distance.begin() + static_cast<long>(distance.size() / 2), distance.end());
+  std::nth_element(distance.begin(), distance.begin() + static_cast<long>(distance.size() / 2),
+                   distance.end());
   if (distance[distance.size() / 2] > 0.15 * in.unit) return false;
   for (const auto& [piece, count] : votes) {
     if (count < 0.05 * static_cast<double>(plan.vertices.size())) continue;
@@ -213,7 +219,8 @@ PieceKind kind_from_name(const std::string& name) {
 std::vector<PiecePlan> plan_pieces(const PieceInput& in) {
   std::vector<PieceKind> source_kinds;
   for (int p = 0; p < in.source.piece_count; ++p)
-    source_kinds.push_back(in.source_skin[at(p)] ? PieceKind::skin : kind_of(in.source, p, in.unit / in.similarity.scale));
+    source_kinds.push_back(in.source_skin[at(p)] ? PieceKind::skin
+                                                 : kind_of(in.source, p, in.unit / in.similarity.scale));
   const SurfaceQuery skin(in.target_surface.surface.positions, in.target_surface.surface.triangles);
   std::vector<PiecePlan> plans;
   for (int p = 0; p < in.target.piece_count; ++p) {
@@ -228,8 +235,9 @@ std::vector<PiecePlan> plan_pieces(const PieceInput& in) {
       plan.way = PiecePlan::Way::donors;
     } else {
       const SkinFit fit = find_skin(in, skin, plan);
-      const bool worn = plan.kind == PieceKind::lash ||
-                        (plan.kind == PieceKind::other && (fit.behind < 0.5 || fit.mean_distance < 0.02 * in.unit));
+      const bool worn =
+          plan.kind == PieceKind::lash ||
+          (plan.kind == PieceKind::other && (fit.behind < 0.5 || fit.mean_distance < 0.02 * in.unit));
       if (worn)
         plan.way = PiecePlan::Way::attached;
       else if (plan.kind == PieceKind::eye)
@@ -245,16 +253,21 @@ std::vector<PiecePlan> plan_pieces(const PieceInput& in) {
 PointsD carry_piece(const PieceInput& in, const PiecePlan& plan, const PointsD& source_delta,
                     const PointsD& skin_delta) {
   switch (plan.way) {
-    case PiecePlan::Way::donors: return carry_from_donors(in, plan, source_delta);
-    case PiecePlan::Way::attached: return carry_from_skin(in, plan, skin_delta);
-    case PiecePlan::Way::jaw: return carry_with_jaw(in, plan, skin_delta);
-    case PiecePlan::Way::still: break;
+    case PiecePlan::Way::donors:
+      return carry_from_donors(in, plan, source_delta);
+    case PiecePlan::Way::attached:
+      return carry_from_skin(in, plan, skin_delta);
+    case PiecePlan::Way::jaw:
+      return carry_with_jaw(in, plan, skin_delta);
+    case PiecePlan::Way::still:
+      break;
   }
   return PointsD::Zero(static_cast<Eigen::Index>(plan.vertices.size()), 3);
 }
 
-WeightMatrix carry_piece_weights(const PieceInput& in, const PiecePlan& plan, const WeightMatrix& source_weights,
-                                 const WeightMatrix& skin_weights, int head_joint) {
+WeightMatrix carry_piece_weights(const PieceInput& in, const PiecePlan& plan,
+                                 const WeightMatrix& source_weights, const WeightMatrix& skin_weights,
+                                 int head_joint) {
   const bool donors = plan.way == PiecePlan::Way::donors;
   const Triangles& triangles = donors ? in.source.triangles : in.target_surface.surface.triangles;
   const WeightMatrix& weights = donors ? source_weights : skin_weights;

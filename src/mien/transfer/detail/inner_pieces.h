@@ -59,8 +59,9 @@ PointsD carry_piece(const PieceInput& input, const PiecePlan& plan, const Points
 /// Skin weights (#vertices of the plan x #J).
 ///   source_weights  pooled source vertices x #J; skin_weights: rows of the target's skin surface x #J
 ///   head_joint      the joint that carries most of the skin: what still pieces are bound to
-WeightMatrix carry_piece_weights(const PieceInput& input, const PiecePlan& plan, const WeightMatrix& source_weights,
-                                 const WeightMatrix& skin_weights, int head_joint);
+WeightMatrix carry_piece_weights(const PieceInput& input, const PiecePlan& plan,
+                                 const WeightMatrix& source_weights, const WeightMatrix& skin_weights,
+                                 int head_joint);
 
 std::string_view name_of(PieceKind kind);
 std::string_view name_of(PiecePlan::Way way);

@@ -27,7 +27,8 @@ bool on_border(const MatchSurface& surface, const SurfaceQuery::Hit& hit) {
 }
 
 /// For each vertex of `from` its match on `to`; triangle -1 where the gates reject.
-std::vector<SurfaceQuery::Hit> match(const MatchSurface& from, const MatchSurface& to, const MatchOptions& options) {
+std::vector<SurfaceQuery::Hit> match(const MatchSurface& from, const MatchSurface& to,
+                                     const MatchOptions& options) {
   std::vector<SurfaceQuery::Hit> hits(static_cast<std::size_t>(from.positions.rows()));
   parallel_for(hits.size(), 64, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v)
@@ -58,7 +59,8 @@ Eigen::Vector3d smooth_normal(const MatchSurface& surface, const SurfaceQuery::H
 
 }  // namespace
 
-MatchSurface::MatchSurface(const PointsD& p, const Triangles& t, const Eigen::VectorXd& o, const Eigen::VectorXd& m)
+MatchSurface::MatchSurface(const PointsD& p, const Triangles& t, const Eigen::VectorXd& o,
+                           const Eigen::VectorXd& m)
     : positions(p),
       normals(vertex_normals(p, t)),
       triangles(t),
@@ -74,7 +76,8 @@ Eigen::Vector3d MatchSurface::triangle_normal(int triangle) const {
   return (b - a).cross(c - a).normalized();
 }
 
-std::vector<Wish> match_both_ways(const MatchSurface& moving, const MatchSurface& fixed, const MatchOptions& options) {
+std::vector<Wish> match_both_ways(const MatchSurface& moving, const MatchSurface& fixed,
+                                  const MatchOptions& options) {
   std::vector<Wish> wishes;
   wishes.reserve(static_cast<std::size_t>(moving.positions.rows() + fixed.positions.rows()));
   const auto forward = match(moving, fixed, options);
@@ -83,7 +86,11 @@ std::vector<Wish> match_both_ways(const MatchSurface& moving, const MatchSurface
     if (hit.triangle < 0) continue;
     const int vertex = static_cast<int>(v);
     const double mass = moving.masses[vertex];
-    wishes.push_back({{vertex, vertex, vertex}, {1, 0, 0}, hit.position, smooth_normal(fixed, hit), mass,
+    wishes.push_back({{vertex, vertex, vertex},
+                      {1, 0, 0},
+                      hit.position,
+                      smooth_normal(fixed, hit),
+                      mass,
                       options.tangential * mass});
   }
   const auto backward = match(fixed, moving, options);

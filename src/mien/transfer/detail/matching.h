@@ -22,13 +22,14 @@ struct MatchSurface {
 };
 
 struct MatchOptions {
-  double least_cosine = 0.5;   ///< of the angle between the normals
-  double least_reach = 0.01;   ///< a match further than max(this, 3 x median distance) is rejected
-  double tangential = 0.1;     ///< tangential share of a plane's pull
+  double least_cosine = 0.5;  ///< of the angle between the normals
+  double least_reach = 0.01;  ///< a match further than max(this, 3 x median distance) is rejected
+  double tangential = 0.35;   ///< tangential share of a plane's pull
 };
 
 /// Wishes that bring the moving vertices onto the fixed surface and the fixed vertices onto the moving surface, each
 /// direction's weights summing to about one. Vertices are those of `moving`.
-std::vector<Wish> match_both_ways(const MatchSurface& moving, const MatchSurface& fixed, const MatchOptions& options);
+std::vector<Wish> match_both_ways(const MatchSurface& moving, const MatchSurface& fixed,
+                                  const MatchOptions& options);
 
 }  // namespace mien::detail

@@ -11,7 +11,8 @@ namespace {
 /// The name of the group that holds face `face`, or the part's.
 std::string name_of_piece(const Part& part, int face) {
   for (const FaceGroup& group : part.mesh.groups)
-    if (part.mesh.groups.size() > 1 && face >= group.face_begin && face < group.face_end && !group.name.empty())
+    if (part.mesh.groups.size() > 1 && face >= group.face_begin && face < group.face_end &&
+        !group.name.empty())
       return group.name;
   return part.name;
 }
@@ -41,7 +42,8 @@ Pool pool(const Character& character) {
     }
     triangles.push_back(triangulate(part.mesh.faces));
     for (Eigen::Index t = 0; t < triangles.back().rows(); ++t)
-      for (int k = 0; k < 3; ++k) triangles.back()(t, k) = numbers[static_cast<std::size_t>(triangles.back()(t, k))];
+      for (int k = 0; k < 3; ++k)
+        triangles.back()(t, k) = numbers[static_cast<std::size_t>(triangles.back()(t, k))];
     triangle_count += triangles.back().rows();
     const std::vector<int> faces = face_of_triangle(part.mesh.faces);
     result.triangle_face.insert(result.triangle_face.end(), faces.begin(), faces.end());
@@ -49,7 +51,8 @@ Pool pool(const Character& character) {
     result.welded.push_back(std::move(numbers));
   }
   result.positions.resize(static_cast<Eigen::Index>(positions.size()), 3);
-  for (std::size_t v = 0; v < positions.size(); ++v) result.positions.row(static_cast<Eigen::Index>(v)) = positions[v];
+  for (std::size_t v = 0; v < positions.size(); ++v)
+    result.positions.row(static_cast<Eigen::Index>(v)) = positions[v];
   result.triangles.resize(triangle_count, 3);
   Eigen::Index row = 0;
   for (const Triangles& t : triangles) {
@@ -63,7 +66,8 @@ Pool pool(const Character& character) {
   for (std::size_t v = 0; v < positions.size(); ++v)
     result.piece_part[static_cast<std::size_t>(result.piece[v])] = result.first_copy[v].first;
   for (Eigen::Index t = triangle_count - 1; t >= 0; --t) {
-    const std::size_t piece = static_cast<std::size_t>(result.piece[static_cast<std::size_t>(result.triangles(t, 0))]);
+    const std::size_t piece =
+        static_cast<std::size_t>(result.piece[static_cast<std::size_t>(result.triangles(t, 0))]);
     const std::size_t tri = static_cast<std::size_t>(t);
     result.piece_name[piece] = name_of_piece(
         character.parts[static_cast<std::size_t>(result.triangle_part[tri])], result.triangle_face[tri]);
@@ -101,13 +105,15 @@ std::vector<char> skin_pieces(const Pool& pool, const Character& character,
   for (const LandmarkPoint& landmark : landmarks) {
     const SurfacePoint& at = landmark.at;
     const Mesh& mesh = character.parts[static_cast<std::size_t>(at.part)].mesh;
-    const int vertex = at.face >= 0 ? mesh.faces[static_cast<std::size_t>(at.face)][at.corners[0]] : at.vertex;
+    const int vertex =
+        at.face >= 0 ? mesh.faces[static_cast<std::size_t>(at.face)][at.corners[0]] : at.vertex;
     const int pooled = pool.welded[static_cast<std::size_t>(at.part)][static_cast<std::size_t>(vertex)];
     ++count[static_cast<std::size_t>(pool.piece[static_cast<std::size_t>(pooled)])];
   }
   const int most = *std::max_element(count.begin(), count.end());
   std::vector<char> skin(count.size());
-  for (std::size_t p = 0; p < count.size(); ++p) skin[p] = count[p] > 0 && (count[p] == most || count[p] >= 0.15 * landmarks.size());
+  for (std::size_t p = 0; p < count.size(); ++p)
+    skin[p] = count[p] > 0 && (count[p] == most || count[p] >= 0.15 * landmarks.size());
   return skin;
 }
 

@@ -12,16 +12,17 @@ namespace mien::detail {
 
 /// Vertices of all parts, seams welded, in model space. Pooled vertices are numbered part after part.
 struct Pool {
-  PointsD positions;                ///< #W x 3
-  Triangles triangles;              ///< #T x 3
-  std::vector<int> triangle_face;   ///< #T: face of its part
-  std::vector<int> triangle_part;   ///< #T
+  PointsD positions;                     ///< #W x 3
+  Triangles triangles;                   ///< #T x 3
+  std::vector<int> triangle_face;        ///< #T: face of its part
+  std::vector<int> triangle_part;        ///< #T
   std::vector<std::vector<int>> welded;  ///< per part, per vertex: its pooled number
-  std::vector<int> piece;           ///< #W: connected piece
+  std::vector<int> piece;                ///< #W: connected piece
   int piece_count = 0;
-  std::vector<int> piece_part;      ///< per piece: the part it belongs to
-  std::vector<std::string> piece_name;  ///< the part's name, or its face group's where the part has several pieces
-  std::vector<Eigen::Matrix4d> part_matrix;  ///< per part: part space to model space
+  std::vector<int> piece_part;  ///< per piece: the part it belongs to
+  std::vector<std::string>
+      piece_name;  ///< the part's name, or its face group's where the part has several pieces
+  std::vector<Eigen::Matrix4d> part_matrix;     ///< per part: part space to model space
   std::vector<std::pair<int, int>> first_copy;  ///< #W: (part, vertex) that stands for the pooled vertex
 };
 
@@ -30,14 +31,15 @@ Pool pool(const Character& character);
 /// A choice of pieces as a surface of its own; row r is pooled vertex `vertices[r]`.
 struct PoolSurface {
   Surface surface;
-  std::vector<int> vertices;        ///< #V
-  std::vector<int> row_of;          ///< #W: row in the surface, -1: not in it
-  std::vector<int> triangles;       ///< #T of the surface: triangle of the pool
+  std::vector<int> vertices;   ///< #V
+  std::vector<int> row_of;     ///< #W: row in the surface, -1: not in it
+  std::vector<int> triangles;  ///< #T of the surface: triangle of the pool
 };
 PoolSurface select_pieces(const Pool& pool, const std::vector<char>& pieces);
 
 /// The pieces that are the face's skin: those that hold landmarks (a stray landmark or two on a tooth or lash does not
 /// make it skin).
-std::vector<char> skin_pieces(const Pool& pool, const Character& character, const std::vector<LandmarkPoint>& landmarks);
+std::vector<char> skin_pieces(const Pool& pool, const Character& character,
+                              const std::vector<LandmarkPoint>& landmarks);
 
 }  // namespace mien::detail
