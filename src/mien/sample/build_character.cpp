@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "mien/sample/detail/character_form.h"
@@ -58,9 +59,10 @@ void add_part(Character& character, const std::string& name, Mesh mesh) {
 }  // namespace
 
 Material plain_material(const char* name, float red, float green, float blue) {
+  const auto linear = [](float s) { return std::pow((s + 0.055f) / 1.055f, 2.4f); };
   Material material;
   material.name = name;
-  material.base_color = {red, green, blue, 1};
+  material.base_color = {linear(red), linear(green), linear(blue), 1};
   return material;
 }
 

@@ -10,7 +10,7 @@
 namespace mien::detail {
 namespace {
 
-enum class Stuff { hidden, hair, skin, iris, eye, teeth, gum };
+enum class Stuff { hidden, lash, hair, skin, iris, eye, teeth, gum };
 
 struct Token {
   const char* text;
@@ -20,8 +20,8 @@ struct Token {
 /// Looked for in this order: "eyelash" is hair before "eye" is an eye.
 constexpr std::array<Token, 22> tokens{
     {{"occlusion", Stuff::hidden}, {"lacrimal", Stuff::hidden}, {"tearline", Stuff::hidden},
-     {"eyeblend", Stuff::hidden},  {"cornea", Stuff::hidden},   {"lash", Stuff::hair},
-     {"eyebrow", Stuff::hair},     {"hair", Stuff::hair},       {"eyelid", Stuff::skin},
+     {"eyeblend", Stuff::hidden},  {"cornea", Stuff::hidden},   {"lash", Stuff::lash},
+     {"brow", Stuff::hair},        {"hair", Stuff::hair},       {"eyelid", Stuff::skin},
      {"socket", Stuff::skin},      {"iris", Stuff::iris},       {"pupil", Stuff::iris},
      {"sclera", Stuff::eye},       {"eye", Stuff::eye},         {"teeth", Stuff::teeth},
      {"tooth", Stuff::teeth},      {"gum", Stuff::gum},         {"tongue", Stuff::gum},
@@ -35,12 +35,27 @@ std::optional<Stuff> stuff_of_name(std::string name) {
   return std::nullopt;
 }
 
+/// The first name that says something; but lashes named so anywhere are lashes, of whatever material.
+Stuff stuff_of_names(const std::array<std::string, 4>& names) {
+  Stuff first = Stuff::skin;
+  bool found = false;
+  for (const std::string& name : names) {
+    const auto stuff = stuff_of_name(name);
+    if (stuff == Stuff::lash) return Stuff::lash;
+    if (stuff && !found) first = *stuff;
+    found = found || stuff;
+  }
+  return first;
+}
+
 Look look_of(Stuff stuff) {
   switch (stuff) {
     case Stuff::hidden:
       return {.visible = false};
+    case Stuff::lash:
+      return {.albedo = {0.035f, 0.025f, 0.02f}, .gloss = 0, .thin = true, .two_sided = true};
     case Stuff::hair:
-      return {.albedo = {0.035f, 0.025f, 0.02f}, .gloss = 0, .thin = true};
+      return {.albedo = {0.05f, 0.035f, 0.025f}, .gloss = 0.04f, .two_sided = true};
     case Stuff::iris:
       return {.albedo = {0.05f, 0.035f, 0.025f}, .gloss = 0.5f, .sharpness = 250};
     case Stuff::eye:
@@ -65,12 +80,7 @@ Look look_of_group(const Character& character, const Part& part, const FaceGroup
   const auto& materials = character.appearance.materials;
   const bool has_material = group.material >= 0 && group.material < static_cast<int>(materials.size());
   const std::string material = has_material ? materials[group.material].name : std::string();
-  Look look;
-  for (const std::string& name : {material, group.name, part.name, part.mesh_name})
-    if (const auto stuff = stuff_of_name(name)) {
-      look = look_of(*stuff);
-      break;
-    }
+  Look look = look_of(stuff_of_names({material, group.name, part.name, part.mesh_name}));
   if (has_material && look.visible) {
     const Eigen::Vector4f& color = materials[group.material].base_color;
     if (color[3] < 0.1f) look.visible = false;

@@ -14,7 +14,8 @@ struct Look {
   float gloss = 0.10f;                                            ///< strength of the highlight
   float sharpness = 14;                                           ///< its exponent
   bool visible = true;
-  bool thin = false;  ///< both sides are outside (lashes)
+  bool thin = false;       ///< lets light pass, casts no shadow (lashes)
+  bool two_sided = false;  ///< both sides are outside (lashes, brows, hair)
 };
 
 /// One look a face of the part.

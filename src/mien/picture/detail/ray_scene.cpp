@@ -15,7 +15,7 @@ std::uint16_t index_of(const Look& look, std::vector<Look>& looks) {
   for (std::size_t i = 0; i < looks.size(); ++i) {
     const Look& known = looks[i];
     if (known.albedo == look.albedo && known.gloss == look.gloss && known.sharpness == look.sharpness &&
-        known.visible == look.visible && known.thin == look.thin)
+        known.visible == look.visible && known.thin == look.thin && known.two_sided == look.two_sided)
       return static_cast<std::uint16_t>(i);
   }
   if (looks.size() >= std::numeric_limits<std::uint16_t>::max()) return 0;

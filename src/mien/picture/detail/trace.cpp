@@ -147,7 +147,7 @@ bool Tracer::surface(const RTCRayHit16& rays, int s, Hit& hit) const {
   hit.gloss = scene_.mapped[triangle] ? 0 : look.gloss;
   hit.sharpness = look.sharpness;
   // The back of a closed skin is the inside of a head: seen only through a hole, it stays in the dark.
-  if (side < 0 && !look.thin) hit.base *= 0.35f, hit.gloss = 0;
+  if (side < 0 && !look.two_sided) hit.base *= 0.35f, hit.gloss = 0;
   if (options_.wireframe && on_edge(triangle, corners, lens_.project(hit.position).z()))
     hit.base *= 0.18f, hit.gloss = 0;
   return true;

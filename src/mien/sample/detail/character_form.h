@@ -28,7 +28,7 @@ struct CharacterForm {
   std::vector<Material> materials;  ///< by MaterialId
 };
 
-/// A material of one colour.
+/// A material of one colour, given in sRGB and kept linear, as glTF has base colours.
 Material plain_material(const char* name, float red, float green, float blue);
 
 CharacterForm human_character();
