@@ -127,14 +127,18 @@ void add_transfer(CLI::App& app, Common& common) {
   const std::map<std::string, TransferMethod> methods{{"register", TransferMethod::registration},
                                                       {"thesis", TransferMethod::thesis}};
   command->add_option("--method", options.method, "register: no folds, no glued lips; thesis: the baseline")
-      ->transform(CLI::CheckedTransformer(methods))
+      ->transform(CLI::CheckedTransformer(methods).description(""))
+      ->type_name("NAME")
       ->default_str("register");
   std::map<std::string, DeltaModel> models;
   for (const DeltaModel model : {DeltaModel::automatic, DeltaModel::local, DeltaModel::raw, DeltaModel::copy,
                                  DeltaModel::warp, DeltaModel::thesis})
     models[std::string(name_of(model))] = model;
-  command->add_option("--deltas", options.deltas, "How displacements are carried")
-      ->transform(CLI::CheckedTransformer(models))
+  command
+      ->add_option("--deltas", options.deltas,
+                   "How displacements are carried: auto, local, raw, copy, warp or thesis")
+      ->transform(CLI::CheckedTransformer(models).description(""))
+      ->type_name("NAME")
       ->default_str("auto");
   command->add_option("--exaggerate", request->exaggerate,
                       "PCT for all shapes or NAME=PCT for one, in percent; repeatable (default: 100)");
