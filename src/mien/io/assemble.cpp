@@ -36,7 +36,7 @@ void check_same_order(const PointsD& displacement, double diagonal, const std::f
 Shape shape_of(const Mesh& neutral, const std::filesystem::path& path, double threshold) {
   const Mesh face = whole_face(path);
   if (face.vertex_count() != neutral.vertex_count())
-    throw invalid_input("file", fmt::format("has {} vertices", face.vertex_count()),
+    throw invalid_input("vertices", fmt::format("are {}", face.vertex_count()),
                         fmt::format("the neutral has {}", neutral.vertex_count()))
         .in_file(path.string());
   const PointsD displacement = face.positions.cast<double>() - neutral.positions.cast<double>();

@@ -22,6 +22,14 @@ struct Corner {
   int vertex = -1, uv = -1, normal = -1;
 };
 
+/// Whether a number that no float holds is too small rather than too large.
+bool is_tiny(std::string_view number) {
+  const std::size_t exponent = number.find_first_of("eE");
+  if (exponent != number.npos) return number.substr(exponent + 1).starts_with('-');
+  const std::size_t point = number.find('.');
+  return number.find_first_of("123456789") > point;
+}
+
 class ObjReader {
  public:
   explicit ObjReader(std::string_view text) : at_(text.data()), end_(text.data() + text.size()) {}
@@ -100,10 +108,8 @@ std::optional<float> ObjReader::next_number() {
   if (*at_ == '+') ++at_;
   float value = 0;
   const auto [after, code] = std::from_chars(at_, end_, value);
-  if (code == std::errc::result_out_of_range) {  // beyond float: zero when tiny, refused when huge
-    double wide = 0;
-    std::from_chars(at_, end_, wide);
-    if (!(std::abs(wide) < 1))
+  if (code == std::errc::result_out_of_range) {
+    if (!is_tiny(std::string_view(at_, static_cast<std::size_t>(after - at_))))
       throw wrong("has a number that is too large", "give numbers that a float can hold");
     value = 0;
   } else if (code != std::errc() || !std::isfinite(value)) {

@@ -67,33 +67,20 @@ std::vector<std::uint32_t> quantized(std::span<const float> values, int exponent
 
 }  // namespace
 
-std::vector<std::uint8_t> GltfBuilder::pack(std::span<const std::uint8_t> bytes, int stride, Use use) const {
+std::vector<std::uint8_t> GltfBuilder::pack(std::span<const std::uint8_t> bytes, int stride, Use use) {
   const std::size_t rows = bytes.size() / stride;
   std::vector<std::uint8_t> packed;
-  if (use == Use::triangles || use == Use::numbers) {
-    std::vector<std::uint32_t> indices(rows);
-    for (std::size_t i = 0; i < rows; ++i) {
-      if (stride == 2) {
-        std::uint16_t value;
-        std::memcpy(&value, bytes.data() + 2 * i, 2);
-        indices[i] = value;
-      } else {
-        std::memcpy(&indices[i], bytes.data() + 4 * i, 4);
-      }
-    }
-    const std::size_t largest =
-        rows > 0 ? *std::max_element(indices.begin(), indices.end()) + std::size_t{1} : 1;
-    if (use == Use::triangles) {
-      packed.resize(meshopt_encodeIndexBufferBound(rows, largest));
-      packed.resize(meshopt_encodeIndexBuffer(packed.data(), packed.size(), indices.data(), rows));
-    } else {
-      packed.resize(meshopt_encodeIndexSequenceBound(rows, largest));
-      packed.resize(meshopt_encodeIndexSequence(packed.data(), packed.size(), indices.data(), rows));
-    }
-  } else {
+  if (use != Use::indices) {
     packed.resize(meshopt_encodeVertexBufferBound(rows, stride));
     packed.resize(meshopt_encodeVertexBuffer(packed.data(), packed.size(), bytes.data(), rows, stride));
+    return packed;
   }
+  std::vector<std::uint32_t> indices(rows, 0);
+  for (std::size_t i = 0; i < rows; ++i) std::memcpy(&indices[i], bytes.data() + stride * i, stride);
+  const std::size_t largest =
+      rows > 0 ? *std::max_element(indices.begin(), indices.end()) + std::size_t{1} : 1;
+  packed.resize(meshopt_encodeIndexSequenceBound(rows, largest));
+  packed.resize(meshopt_encodeIndexSequence(packed.data(), packed.size(), indices.data(), rows));
   return packed;
 }
 
@@ -103,7 +90,7 @@ int GltfBuilder::add_view(std::span<const std::uint8_t> bytes, int stride, Use u
   const bool codec_takes = use == Use::attribute ? stride % 4 == 0 : use != Use::plain && stride >= 2;
   if (compress_ && codec_takes) {
     const std::vector<std::uint8_t> packed = pack(bytes, stride, use);
-    const char* mode = use == Use::attribute ? "ATTRIBUTES" : use == Use::triangles ? "TRIANGLES" : "INDICES";
+    const char* mode = use == Use::attribute ? "ATTRIBUTES" : "INDICES";
     Json extension = {{"buffer", 0},          {"byteOffset", buffer_.size()},   {"byteLength", packed.size()},
                       {"byteStride", stride}, {"count", bytes.size() / stride}, {"mode", mode}};
     view["buffer"] = 1;
@@ -179,17 +166,28 @@ int GltfBuilder::add_attribute(std::span<const std::uint16_t> values, int column
   return accessor;
 }
 
+/// The bytes that floats will take in the file.
+std::size_t GltfBuilder::stored_size(std::span<const float> values, Precision precision) const {
+  if (!compress_) return values.size_bytes();
+  if (precision.error <= 0) return pack(bytes_of(values), 12, Use::attribute).size();
+  std::vector<float> decoded;
+  const std::vector<std::uint32_t> words = quantized(values, exponent_for(values, precision.error), decoded);
+  return pack(bytes_of(std::span<const std::uint32_t>(words)), 12, Use::attribute).size();
+}
+
 int GltfBuilder::add_deltas(int rows, std::span<const int> vertices, const Points& deltas,
                             Precision precision) {
   const std::span<const float> values(deltas.data(), static_cast<std::size_t>(deltas.size()));
   constexpr std::size_t overhead = 256;  // two views and their JSON
   const std::size_t index_size = rows <= 65535 ? 2 : 4;
-  const bool sparse = vertices.size() * (12 + index_size) + overhead < static_cast<std::size_t>(rows) * 12;
-  if (!sparse && !vertices.empty()) {
+  // A compressed index takes about a byte.
+  const std::size_t sparse_size =
+      stored_size(values, precision) + vertices.size() * (compress_ ? 1 : index_size) + overhead;
+  if (!vertices.empty()) {
     Points dense = Points::Zero(rows, 3);
     for (std::size_t k = 0; k < vertices.size(); ++k) dense.row(vertices[k]) = deltas.row(k);
-    return add_attribute(std::span<const float>(dense.data(), static_cast<std::size_t>(dense.size())), 3,
-                         precision, true);
+    const std::span<const float> all(dense.data(), static_cast<std::size_t>(dense.size()));
+    if (stored_size(all, precision) <= sparse_size) return add_attribute(all, 3, precision, true);
   }
   const int accessor = add_accessor(-1, type_f32, 3, rows);
   add_bounds(accessor, as_stored(values, compress_, precision), 3,
@@ -198,11 +196,11 @@ int GltfBuilder::add_deltas(int rows, std::span<const int> vertices, const Point
   Json indices;
   if (index_size == 2) {
     const std::vector<std::uint16_t> narrow(vertices.begin(), vertices.end());
-    indices = {{"bufferView", add_view(bytes_of(std::span<const std::uint16_t>(narrow)), 2, Use::numbers)},
+    indices = {{"bufferView", add_view(bytes_of(std::span<const std::uint16_t>(narrow)), 2, Use::indices)},
                {"componentType", type_u16}};
   } else {
     const std::vector<std::uint32_t> wide(vertices.begin(), vertices.end());
-    indices = {{"bufferView", add_view(bytes_of(std::span<const std::uint32_t>(wide)), 4, Use::numbers)},
+    indices = {{"bufferView", add_view(bytes_of(std::span<const std::uint32_t>(wide)), 4, Use::indices)},
                {"componentType", type_u32}};
   }
   accessors_[accessor]["sparse"] = {{"count", vertices.size()},
@@ -215,10 +213,10 @@ int GltfBuilder::add_triangles(const std::vector<std::uint32_t>& indices, std::u
   int accessor;
   if (vertex_count <= 65535) {  // 65535 itself restarts a primitive
     const std::vector<std::uint16_t> narrow(indices.begin(), indices.end());
-    accessor = add_accessor(add_view(bytes_of(std::span<const std::uint16_t>(narrow)), 2, Use::triangles),
+    accessor = add_accessor(add_view(bytes_of(std::span<const std::uint16_t>(narrow)), 2, Use::indices),
                             type_u16, 1, indices.size());
   } else {
-    accessor = add_accessor(add_view(bytes_of(std::span<const std::uint32_t>(indices)), 4, Use::triangles),
+    accessor = add_accessor(add_view(bytes_of(std::span<const std::uint32_t>(indices)), 4, Use::indices),
                             type_u32, 1, indices.size());
   }
   views_.back()["target"] = element_array_buffer;
@@ -233,10 +231,10 @@ int GltfBuilder::add_numbers(const std::vector<std::uint32_t>& numbers) {
   }
   if (largest <= 65535) {
     const std::vector<std::uint16_t> narrow(numbers.begin(), numbers.end());
-    return add_accessor(add_view(bytes_of(std::span<const std::uint16_t>(narrow)), 2, Use::numbers), type_u16,
+    return add_accessor(add_view(bytes_of(std::span<const std::uint16_t>(narrow)), 2, Use::indices), type_u16,
                         1, numbers.size());
   }
-  return add_accessor(add_view(bytes_of(std::span<const std::uint32_t>(numbers)), 4, Use::numbers), type_u32,
+  return add_accessor(add_view(bytes_of(std::span<const std::uint32_t>(numbers)), 4, Use::indices), type_u32,
                       1, numbers.size());
 }
 

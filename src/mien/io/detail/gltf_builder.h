@@ -46,9 +46,10 @@ class GltfBuilder {
   bool compressed_any() const { return fallback_size_ > 0; }
 
  private:
-  enum class Use { attribute, triangles, numbers, plain };
+  enum class Use { attribute, indices, plain };
   int add_view(std::span<const std::uint8_t> bytes, int stride, Use use);
-  std::vector<std::uint8_t> pack(std::span<const std::uint8_t> bytes, int stride, Use use) const;
+  static std::vector<std::uint8_t> pack(std::span<const std::uint8_t> bytes, int stride, Use use);
+  std::size_t stored_size(std::span<const float> values, Precision precision) const;
   int add_accessor(int view, int component_type, int columns, std::size_t rows);
   void add_bounds(int accessor, std::span<const float> values, int columns, bool with_zero);
   int float_view(std::span<const float> values, int columns, Precision precision);

@@ -191,8 +191,8 @@ bool Restorer::read_uvs() {
 }
 
 void Restorer::read_groups() {
+  if (!vendor_.has("groups")) return;  // the primitives say it all
   Mesh& mesh = part_.mesh;
-  const std::vector<FaceGroup> primitives = mesh.groups;
   const int face_count = static_cast<int>(mesh.faces.size());
   mesh.groups.clear();
   int begin = 0;
@@ -241,6 +241,7 @@ void Restorer::drop_copies(const std::vector<PartDelta*>& deltas) {
 bool groups_are_plain(const Mesh& mesh, const SplitMesh& split) {
   const std::vector<FaceGroup> primitives = primitive_groups(mesh, split);
   return split.copy_of.empty() && primitives == mesh.groups &&
+         mesh.faces.corner_count() == 3 * mesh.faces.size() &&
          std::all_of(primitives.begin(), primitives.end(), [](const FaceGroup& g) { return g.name.empty(); });
 }
 

@@ -88,7 +88,7 @@ std::string json_text(const Json& json, int indent) {
 }
 
 JsonObject::JsonObject(const Json& json, std::string place) : json_(&json), place_(std::move(place)) {
-  if (!json.is_object()) throw wrong_type(place_, "an object", json);
+  if (!json.is_object()) throw wrong_type(place_.empty() ? "file" : place_, "an object", json);
 }
 
 std::string JsonObject::place_of(std::string_view key) const {
