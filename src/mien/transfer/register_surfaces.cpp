@@ -15,24 +15,27 @@ namespace mien {
 namespace {
 
 struct Stage {
-  double stiffness, landmarks;
+  double stiffness;
+  double landmarks;  ///< weight of all landmarks if there are 68
+  double
+      tangential;  ///< while the surface is stiff, closest points say where to slide; at the end they only say how far
 };
 /// Weight of one openness level in one direction, while the stiffness is at least `curves_until`: lid and lip lines say
 /// where features are, not where each vertex of a margin belongs.
 constexpr double curve_weight = 0.033, curves_until = 0.06;
 
 /// From the whole face's proportions down to features of a few edges.
-constexpr std::array<Stage, 11> schedule{{{3, .5},
-                                          {1, .5},
-                                          {.3, .5},
-                                          {.1, .5},
-                                          {.03, .15},
-                                          {.01, .05},
-                                          {.003, .015},
-                                          {.001, .005},
-                                          {3e-4, 0},
-                                          {1e-4, 0},
-                                          {3e-5, 0}}};
+constexpr std::array<Stage, 11> schedule{{{3, .5, .35},
+                                          {1, .5, .35},
+                                          {.3, .5, .35},
+                                          {.1, .5, .35},
+                                          {.03, .15, .35},
+                                          {.01, .05, .35},
+                                          {.003, .015, .35},
+                                          {.001, .005, .12},
+                                          {2e-4, 0, .12},
+                                          {5e-5, 0, .12},
+                                          {1e-5, 0, .12}}};
 
 Eigen::VectorXd normalised_areas(const Surface& surface) {
   const Eigen::VectorXd areas = vertex_areas(surface.positions, surface.triangles);
@@ -90,7 +93,8 @@ Registration register_surfaces(const Surface& source, const Surface& target, con
   for (std::size_t s = 0; s < schedule.size(); ++s) {
     report_progress(options.progress, "registering", static_cast<double>(s) / schedule.size());
     const detail::MatchSurface moving(start + u, source.triangles, result.source_openness, solver.masses());
-    std::vector<detail::Wish> wishes = detail::match_both_ways(moving, fixed, {});
+    std::vector<detail::Wish> wishes =
+        detail::match_both_ways(moving, fixed, {.tangential = schedule[s].tangential});
     add_landmark_wishes(landmark_hits, source.triangles, goals,
                         options.landmark_trust * schedule[s].landmarks / 68, wishes);
     if (schedule[s].stiffness >= curves_until) {
