@@ -208,6 +208,12 @@ PointsD carry_with_jaw(const PieceInput& in, const PiecePlan& plan, const Points
 }  // namespace
 
 PieceKind kind_from_name(const std::string& name) {
+  // Of "part: group" the group knows better: a part of eyes and lashes has groups of either.
+  const std::size_t colon = name.rfind(": ");
+  if (colon != std::string::npos) {
+    const PieceKind group = kind_from_name(name.substr(colon + 2));
+    return group != PieceKind::other ? group : kind_from_name(name.substr(0, colon));
+  }
   const std::string n = lower(name);
   if (has(n, {"lash", "brow", "beard", "hair", "mustache", "moustache"})) return PieceKind::lash;
   if (has(n, {"teeth", "tooth", "gum", "denture"})) return PieceKind::teeth;

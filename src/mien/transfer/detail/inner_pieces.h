@@ -13,7 +13,7 @@ namespace mien::detail {
 
 enum class PieceKind { skin, eye, teeth, tongue, lash, other };
 
-/// Reads the kind from a name ("l-eye", "upper-teeth", "Lashes"); `other` when it says nothing.
+/// Reads the kind from a name ("l-eye", "upper-teeth", "Head: Lashes"); `other` when it says nothing.
 PieceKind kind_from_name(const std::string& name);
 
 /// How one target piece gets its motion.

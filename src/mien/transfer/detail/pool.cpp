@@ -8,12 +8,12 @@
 namespace mien::detail {
 namespace {
 
-/// The name of the group that holds face `face`, or the part's.
+/// The part's name, and behind it the name of the group that holds face `face` where there are several.
 std::string name_of_piece(const Part& part, int face) {
   for (const FaceGroup& group : part.mesh.groups)
     if (part.mesh.groups.size() > 1 && face >= group.face_begin && face < group.face_end &&
         !group.name.empty())
-      return group.name;
+      return part.name + ": " + group.name;
   return part.name;
 }
 

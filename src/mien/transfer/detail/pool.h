@@ -21,7 +21,7 @@ struct Pool {
   int piece_count = 0;
   std::vector<int> piece_part;  ///< per piece: the part it belongs to
   std::vector<std::string>
-      piece_name;  ///< the part's name, or its face group's where the part has several pieces
+      piece_name;  ///< the part's name, or "part: group" where the part has several face groups
   std::vector<Eigen::Matrix4d> part_matrix;     ///< per part: part space to model space
   std::vector<std::pair<int, int>> first_copy;  ///< #W: (part, vertex) that stands for the pooled vertex
 };
