@@ -28,8 +28,10 @@ Picture checkered() {
 }
 
 TEST(Picture, InvalidInputs) {
-  EXPECT_EQ(error_of([] { blank_picture(0, 5); }), "picture: is 0 x 5 pixels; sides from 1 to 16384");
+  EXPECT_EQ(error_of([] { blank_picture(0, 5); }),
+            "picture: is 0 x 5 pixels; sides from 1 to 16384, at most 100 million pixels");
   EXPECT_THAT(error_of([] { blank_picture(5, 20000); }), HasSubstr("5 x 20000"));
+  EXPECT_THAT(error_of([] { blank_picture(16000, 16000); }), HasSubstr("16000 x 16000"));
   EXPECT_THAT(error_of([] { decode_png({}); }), HasSubstr("is not a PNG"));
   EXPECT_THAT(error_of([] { decode_png({'G', 'I', 'F', '8'}); }), HasSubstr("is not a PNG"));
   std::vector<unsigned char> bytes = encode_png(checkered());
@@ -37,7 +39,7 @@ TEST(Picture, InvalidInputs) {
   EXPECT_THAT(error_of([&] { decode_png(bytes); }), HasSubstr("PNG: is broken"));
   bytes = encode_png(checkered());
   bytes[16] = 0x7f;  // a width of two thousand million
-  EXPECT_THAT(error_of([&] { decode_png(bytes); }), HasSubstr("PNG: has a side of 2130706439 pixels"));
+  EXPECT_THAT(error_of([&] { decode_png(bytes); }), HasSubstr("PNG: has 2130706439 x 5 pixels"));
 }
 
 TEST(Picture, PngRoundTripKeepsEveryPixel) {

@@ -219,5 +219,30 @@ TEST(Render, FlatAndDegenerateFacesDoNoHarm) {
   EXPECT_NE(render(flat, positions_of(flat), small()), blank_picture(64, 64, RenderOptions().background));
 }
 
+TEST(Render, BandsMeetWithoutASeam) {
+  // So wide that it is traced in two bands of rows.
+  const Character ball = character_of({make_sphere("skin", 24)});
+  RenderOptions wide = small();
+  wide.width = 9000;
+  wide.height = 140;
+  const Picture picture = render(ball, positions_of(ball), wide);
+  const int middle = wide.width / 2;
+  for (int y = 20; y < 120; ++y)
+    EXPECT_LT(std::abs(bright(at(picture, middle, y + 1)) - bright(at(picture, middle, y))), 0.05f) << y;
+}
+
+TEST(Render, OddGeometryDoesNoHarm) {
+  const Character ball = character_of({make_sphere("skin", 4)});
+  for (const float scale : {0.f, 1e-35f, 1e-20f, 1e20f, 1e37f}) {
+    const Picture picture = render(ball, positions_of(ball, scale), small());
+    EXPECT_EQ(picture.rgba.size(), 4u * 64 * 64) << scale;
+  }
+  Points line = Points::Zero(ball.parts[0].mesh.positions.rows(), 3);
+  line.col(1) = ball.parts[0].mesh.positions.col(1);
+  EXPECT_EQ(render(ball, {line}, small()).width, 64);
+  line.array() += 1e6f;
+  EXPECT_EQ(render(ball, {line}, small()).width, 64);
+}
+
 }  // namespace
 }  // namespace mien

@@ -36,26 +36,36 @@ std::uint8_t byte_of(float value) {
   return static_cast<std::uint8_t>(std::lround(std::clamp(value, 0.f, 1.f) * 255));
 }
 
+bool is_too_large(long long width, long long height) {
+  return width < 1 || height < 1 || width > max_picture_side || height > max_picture_side ||
+         width * height > max_picture_pixels;
+}
+
+std::string size_limit() {
+  return "sides from 1 to " + std::to_string(max_picture_side) + ", at most " +
+         std::to_string(max_picture_pixels / 1'000'000) + " million pixels";
+}
+
 /// PNG's header states its size right after the signature: a picture too large is refused before it is
 /// decoded.
 void check_png_header(const std::vector<unsigned char>& bytes) {
   static constexpr unsigned char signature[8] = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
   if (bytes.size() < 24 || !std::equal(signature, signature + 8, bytes.begin()))
     throw io_error("picture", "is not a PNG", "a PNG file");
-  for (const int at : {16, 20}) {
-    const unsigned side = bytes[at] << 24 | bytes[at + 1] << 16 | bytes[at + 2] << 8 | bytes[at + 3];
-    if (side < 1 || side > static_cast<unsigned>(max_picture_side))
-      throw io_error("PNG", "has a side of " + std::to_string(side) + " pixels",
-                     "from 1 to " + std::to_string(max_picture_side));
-  }
+  const auto side = [&](std::size_t at) {
+    return static_cast<long long>(bytes[at]) << 24 | bytes[at + 1] << 16 | bytes[at + 2] << 8 | bytes[at + 3];
+  };
+  if (is_too_large(side(16), side(20)))
+    throw io_error("PNG", "has " + std::to_string(side(16)) + " x " + std::to_string(side(20)) + " pixels",
+                   size_limit());
 }
 
 }  // namespace
 
 Picture blank_picture(int width, int height, Color color) {
-  if (width < 1 || height < 1 || width > max_picture_side || height > max_picture_side)
+  if (is_too_large(width, height))
     throw invalid_input("picture", "is " + std::to_string(width) + " x " + std::to_string(height) + " pixels",
-                        "sides from 1 to " + std::to_string(max_picture_side));
+                        size_limit());
   Picture picture{width, height, {}};
   picture.rgba.resize(std::size_t{4} * width * height);
   const std::uint8_t pixel[4] = {byte_of(color.r), byte_of(color.g), byte_of(color.b), 255};

@@ -19,11 +19,12 @@ struct Picture {
   bool operator==(const Picture&) const = default;
 };
 
-/// The largest side of a picture that mien makes, in pixels.
+/// The largest picture that mien makes or reads, in pixels.
 constexpr int max_picture_side = 16384;
+constexpr long long max_picture_pixels = 100'000'000;
 
 /// A picture of one colour.
-///   throws  invalid_input: a side below 1 or above `max_picture_side`
+///   throws  invalid_input: a side below 1 or above `max_picture_side`, more than `max_picture_pixels`
 Picture blank_picture(int width, int height, Color color = {1, 1, 1});
 
 /// `picture` averaged down or interpolated up to another size.

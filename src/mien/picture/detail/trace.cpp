@@ -268,22 +268,33 @@ Gathered Tracer::gather(int x, int y) const {
   return gathered;
 }
 
+/// Some rows of gathered pixels: a large picture is traced band by band, so that memory stays small.
+struct Band {
+  int first = 0, last = 0;  // rows [first, last)
+  int width = 0;
+  std::vector<Gathered> pixels;
+  const Gathered& at(int x, int y) const { return pixels[static_cast<std::size_t>(y - first) * width + x]; }
+  bool holds(int x, int y) const { return x >= 0 && x < width && y >= first && y < last; }
+};
+
+constexpr int filter_reach = 2;  // pixels
+
 /// Visibility averaged over the neighbours that lie on the same surface.
-Eigen::Vector2f filtered(const std::vector<Gathered>& pixels, const Lens& lens, int x, int y) {
-  const Gathered& here = pixels[static_cast<std::size_t>(y) * lens.width + x];
+Eigen::Vector2f filtered(const Band& band, const Lens& lens, int x, int y) {
+  const Gathered& here = band.at(x, y);
   const float reach = 1.5f * lens.pixel((here.position - lens.eye).norm());
   Eigen::Vector2f sum = Eigen::Vector2f::Zero();
   float total = 0;
-  for (int dy = -2; dy <= 2; ++dy)
-    for (int dx = -2; dx <= 2; ++dx) {
-      const int nx = x + dx, ny = y + dy;
-      if (nx < 0 || ny < 0 || nx >= lens.width || ny >= lens.height) continue;
-      const Gathered& there = pixels[static_cast<std::size_t>(ny) * lens.width + nx];
+  for (int dy = -filter_reach; dy <= filter_reach; ++dy)
+    for (int dx = -filter_reach; dx <= filter_reach; ++dx) {
+      if (!band.holds(x + dx, y + dy)) continue;
+      const Gathered& there = band.at(x + dx, y + dy);
       if (there.coverage == 0) continue;
       const float off = std::abs((there.position - here.position).dot(here.normal)) / reach;
       const float turn = std::max(0.f, here.normal.dot(there.normal));
       // Half weight on the rim: every stratum of the block counts the same.
-      const float rim = (std::abs(dx) == 2 ? 0.5f : 1.f) * (std::abs(dy) == 2 ? 0.5f : 1.f);
+      const float rim =
+          (std::abs(dx) == filter_reach ? 0.5f : 1.f) * (std::abs(dy) == filter_reach ? 0.5f : 1.f);
       const float weight =
           rim * std::exp(-off * off) * std::pow(turn, 12.f) + (dx == 0 && dy == 0 ? 1e-6f : 0.f);
       sum += weight * Eigen::Vector2f(there.key_visible, there.sky_visible);
@@ -315,32 +326,46 @@ Vec pixel_color(const Gathered& gathered, const Eigen::Vector2f& visible) {
          gathered.coverage;
 }
 
+Band gather_band(const Tracer& tracer, int first, int last, int width) {
+  Band band{first, last, width, {}};
+  band.pixels.resize(static_cast<std::size_t>(last - first) * width);
+  parallel_for(last - first, 4, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t row = begin; row < end; ++row)
+      for (int x = 0; x < width; ++x)
+        band.pixels[row * width + x] = tracer.gather(x, first + static_cast<int>(row));
+  });
+  return band;
+}
+
+void compose_pixel(const Band& band, const Lens& lens, int x, int y, Picture& picture) {
+  const Gathered& gathered = band.at(x, y);
+  if (gathered.coverage == 0) return;
+  const Vec color = pixel_color(gathered, filtered(band, lens, x, y));
+  const float share = gathered.coverage / samples;
+  std::uint8_t* pixel = picture.rgba.data() + 4 * (static_cast<std::size_t>(y) * picture.width + x);
+  for (int k = 0; k < 3; ++k) {
+    const float value = 255 * share * display(color[k]) + (1 - share) * static_cast<float>(pixel[k]);
+    pixel[k] = static_cast<std::uint8_t>(std::lround(std::clamp(value, 0.f, 255.f)));
+  }
+}
+
 }  // namespace
 
 Picture trace(const RayScene& scene, const std::vector<Look>& looks, const Lens& lens,
               const TraceOptions& options) {
   Picture picture = blank_picture(lens.width, lens.height, options.background);
   const Tracer tracer(scene, looks, lens, options);
-  std::vector<Gathered> pixels(static_cast<std::size_t>(lens.width) * lens.height);
-  parallel_for(lens.height, 4, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t y = begin; y < end; ++y)
-      for (int x = 0; x < lens.width; ++x) pixels[y * lens.width + x] = tracer.gather(x, static_cast<int>(y));
-  });
-  const std::array<float, 3> ground{options.background.r, options.background.g, options.background.b};
-  parallel_for(lens.height, 4, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t y = begin; y < end; ++y)
-      for (int x = 0; x < lens.width; ++x) {
-        const Gathered& gathered = pixels[y * lens.width + x];
-        if (gathered.coverage == 0) continue;
-        const Vec color = pixel_color(gathered, filtered(pixels, lens, x, static_cast<int>(y)));
-        const float share = gathered.coverage / samples;
-        for (int k = 0; k < 3; ++k) {
-          const float value = share * display(color[k]) + (1 - share) * ground[k];
-          picture.rgba[4 * (y * lens.width + x) + k] =
-              static_cast<std::uint8_t>(std::lround(255 * std::clamp(value, 0.f, 1.f)));
-        }
-      }
-  });
+  const int rows = std::max(16, (1 << 20) / lens.width);
+  for (int begin = 0; begin < lens.height; begin += rows) {
+    const int end = std::min(begin + rows, lens.height);
+    const Band band = gather_band(tracer, std::max(0, begin - filter_reach),
+                                  std::min(lens.height, end + filter_reach), lens.width);
+    parallel_for(end - begin, 4, [&](std::size_t from, std::size_t to) {
+      for (std::size_t row = from; row < to; ++row)
+        for (int x = 0; x < lens.width; ++x)
+          compose_pixel(band, lens, x, begin + static_cast<int>(row), picture);
+    });
+  }
   return picture;
 }
 
