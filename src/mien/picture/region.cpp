@@ -103,7 +103,7 @@ std::optional<Box> find_region(const Character& character, const std::vector<Poi
       box.low = box.low.cwiseMin(row);
       box.high = box.high.cwiseMax(row);
     }
-    const double room = 0.25 * box.diagonal();
+    const double room = 0.12 * box.diagonal();
     box.low.array() -= room;
     box.high.array() += room;
     return box;
