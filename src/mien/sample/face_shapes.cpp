@@ -126,7 +126,7 @@ void add_lips(Shapes& shapes, const HeadMesh& head, const HeadForm& form, const 
   shapes.add("mouthShrugUpper",
              pull({{{0, m.line + 0.4, m.front}, {2.9, 2.0, 3}, {0, 0.34, 0.22}, On::upper},
                    {{0, m.line, m.front - 0.3}, {2.5, 1.3, 3}, {0, 0.22, 0.1}, On::lower}}));
-  shapes.add_pair("mouthPress", lip_press(head, form, regions));
+  shapes.add_pair("mouthPress", lip_press(head, regions));
   shapes.add_pair("mouthLowerDown",
                   pull({{{1.1, m.line - 0.5, m.front - 0.5}, {2.2, 2.1, 3}, {0.1, -0.75, 0}, On::lower}}));
   shapes.add_pair("mouthUpperUp",

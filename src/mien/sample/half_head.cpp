@@ -156,6 +156,8 @@ Loop border_of(const HalfHead& half, const Block& block) {
 }
 
 void relax(HalfHead& half, const HeadForm& form) {
+  // The last rounds even out what cells too large for the flesh's creases leave: they leave the flesh a little.
+  constexpr int kPolish = 2;
   const std::size_t n = half.points.size();
   std::vector<std::vector<int>> around(n);
   for (const auto& quad : half.quads) {
@@ -190,8 +192,12 @@ void relax(HalfHead& half, const HeadForm& form) {
         Vector3d p = half.points[v], normal = form.sculpt.normal(p);
         Vector3d move = sum / weight - p;
         if (half.midline[v]) move.x() = normal.x() = 0;
-        p += 0.6 * (move - normal * normal.dot(move));
-        p -= form.sculpt.distance(p) * normal;
+        if (round + kPolish < form.grid.relaxations) {
+          p += 0.6 * (move - normal * normal.dot(move));
+          p -= form.sculpt.distance(p) * normal;
+        } else {
+          p += 0.5 * move;
+        }
         if (half.midline[v]) p.x() = 0;
         next[v] = p;
       }

@@ -41,9 +41,9 @@ static Sculpt human_sculpt() {
       capsule({0.3, -6.48, 10.40}, 0.43, {1.0, -6.52, 10.28}, 0.42, 0.8).both(),
       capsule({1.0, -6.52, 10.28}, 0.42, {1.8, -6.68, 9.80}, 0.33, 0.8).both(),
       capsule({1.8, -6.68, 9.80}, 0.33, {2.6, -6.88, 9.15}, 0.2, 0.8).both(),
-      capsule({0, -7.43, 10.22}, 0.5, {0.8, -7.41, 10.12}, 0.48, 0.12).both(),
-      capsule({0.8, -7.41, 10.12}, 0.48, {1.6, -7.30, 9.75}, 0.36, 0.15).both(),
-      capsule({1.6, -7.30, 9.75}, 0.36, {2.5, -7.02, 9.15}, 0.2, 0.2).both(),
+      capsule({0, -7.40, 10.22}, 0.5, {0.8, -7.39, 10.12}, 0.48, 0.12).both(),
+      capsule({0.8, -7.39, 10.12}, 0.48, {1.7, -7.26, 9.70}, 0.34, 0.12).both(),
+      capsule({1.7, -7.26, 9.70}, 0.34, {2.55, -7.04, 9.15}, 0.18, 0.12).both(),
       ellipsoid({0, -8.0, 9.0}, {2.2, 0.7, 1.2}, 0.8),
       // Philtrum and the furrow above the chin.
       capsule({0, -5.2, 10.9}, 0.2, {0, -5.9, 11.1}, 0.25, 0.5).cut(),
@@ -54,22 +54,26 @@ static Sculpt human_sculpt() {
 static HeadForm human_form() {
   HeadForm form;
   form.sculpt = human_sculpt();
+  form.mouth.upper_border = -6.1;
+  form.mouth.lower_border = -7.86;
+  form.mouth.corner = -6.95;
+  form.mouth.corner_front = 9.3;
   form.grid.rows = {
       {0, -17.0, -2.4, -4, 0, 4},    // base of the neck
       {5, -11.5, -1.8, -8, 12, 22},  // under the jaw
       {4, -8.0, 0.0, -22, 16, 20},   // bottom of the chin
       {4, -6.0, 0.0, -17, 8, 18},    // below the mouth
       {8, -4.0, 0.0, -6, 4, 14},     // above the mouth
-      {4, -4.0, 0.0, 1, 8, 14},      // tip of the nose
+      {6, -4.0, 0.0, 1, 8, 14},      // tip of the nose
       {6, -1.0, 0.0, -6, 3, 10},     // below the eyes
       {8, 1.0, 0.0, 6, 6, 14},       // brows
       {8, 3.6, -0.7, 32, 38, 38},    // hairline
   };
   form.grid.columns = {{0, 0}, {8, 10}, {10, 39}, {5, 88}, {5, 122}, {8, 180}};
-  form.grid.eye = {8, 18, 31, 39};
+  form.grid.eye = {8, 18, 33, 41};
   form.grid.mouth = {0, 12, 13, 21};
-  form.grid.nostril = {3, 6, 22, 24};
-  form.grid.ear = {23, 28, 27, 37};
+  form.grid.nostril = {3, 6, 22, 26};
+  form.grid.ear = {23, 28, 29, 39};
   return form;
 }
 
@@ -77,10 +81,12 @@ CharacterForm human_character() {
   CharacterForm form;
   form.name = "human";
   form.head = human_form();
-  form.upper_teeth.edge = -7.15;
+  form.upper_teeth.edge = -7.12;
+  form.upper_teeth.front = 9.25;
+  form.upper_teeth.width = 2.15;
   form.lower_teeth.edge = -7.0;
-  form.lower_teeth.front = 9.05;
-  form.lower_teeth.width = 2.2;
+  form.lower_teeth.front = 8.9;
+  form.lower_teeth.width = 2.0;
   form.lower_teeth.height = -0.85;
   form.brows.line = {{1.0, 1.75, 9}, {2.1, 2.25, 9}, {3.3, 2.45, 8.5}, {4.3, 2.25, 8}, {5.1, 1.6, 7}};
   form.lashes = 0.45;
@@ -94,8 +100,8 @@ CharacterForm human_character() {
       plain_material("skin", 0.85f, 0.66f, 0.56f),   plain_material("eye white", 0.92f, 0.91f, 0.89f),
       plain_material("iris", 0.24f, 0.38f, 0.46f),   plain_material("pupil", 0.02f, 0.02f, 0.02f),
       plain_material("teeth", 0.93f, 0.90f, 0.83f),  plain_material("gum", 0.68f, 0.36f, 0.36f),
-      plain_material("tongue", 0.72f, 0.38f, 0.38f), plain_material("hair", 0.13f, 0.10f, 0.08f),
-      plain_material("mouth", 0.45f, 0.18f, 0.17f),  plain_material("lips", 0.76f, 0.45f, 0.42f)};
+      plain_material("tongue", 0.72f, 0.38f, 0.38f), plain_material("hair", 0.22f, 0.15f, 0.11f),
+      plain_material("mouth", 0.45f, 0.18f, 0.17f),  plain_material("lips", 0.74f, 0.47f, 0.43f)};
   return form;
 }
 

@@ -28,6 +28,27 @@ Vector3d lip_border_at(const MouthForm& mouth, bool upper, double t) {
   return p;
 }
 
+namespace {
+
+/// Where the flesh is deepest between the lips, close to the drawn line.
+Vector3d lip_crease(const HeadForm& form, double t) {
+  const Vector3d line = lip_line_at(form.mouth, t);
+  Vector3d best = line;
+  double least = 1e300;
+  for (int k = -10; k <= 10; ++k) {
+    const double dy = 0.025 * (1 - t * t) * k;
+    const Vector3d p = form.sculpt.cast({line.x(), line.y() + dy, line.z() - 2}, Vector3d::UnitZ(), 6);
+    const double cost = p.z() + 1.5 * dy * dy;
+    if (cost < least) {
+      least = cost;
+      best = p;
+    }
+  }
+  return best;
+}
+
+}  // namespace
+
 void add_mouth(HalfHead& half, const HeadForm& form) {
   const MouthForm& mouth = form.mouth;
   const Loop border = border_of(half, form.grid.mouth);
@@ -35,6 +56,16 @@ void add_mouth(HalfHead& half, const HeadForm& form) {
   const Vector2d uv_centre = (half.uvs[border.front()] + half.uvs[border.back()]) / 2;
   const int rings = form.grid.mouth_rings, inner_rings = 10, total = rings + inner_rings;
   const auto along = [&](int a) { return a <= turn ? double(a) / turn : double(last - a) / turn; };
+
+  std::vector<Vector3d> line(turn + 1);
+  for (int a = 0; a <= turn; ++a) line[a] = lip_crease(form, double(a) / turn);
+  for (int round = 0; round < 4; ++round) {
+    const std::vector<Vector3d> before = line;
+    for (int a = 0; a < turn; ++a)
+      line[a].tail<2>() = (before[a ? a - 1 : 1] + 2 * before[a] + before[a + 1]).tail<2>() / 4;
+  }
+  for (Vector3d& p : line)
+    p.z() = std::min(p.z(), form.sculpt.cast({p.x(), p.y(), p.z() - 2}, Vector3d::UnitZ(), 6).z() - 0.03);
 
   half.mouth.push_back(border);
   std::vector<Vector3d> ring(count);
@@ -53,30 +84,36 @@ void add_mouth(HalfHead& half, const HeadForm& form) {
     for (int a = 0; a < count; ++a)
       ring[a] = (1 - t) * half.points[border[a]] +
                 t * (lip_border_at(mouth, a <= turn, along(a)) + Vector3d(0, 0, 0.3));
-    push(k < rings ? HalfHead::Hold::free : HalfHead::Hold::surface);
+    if (k == rings)
+      for (Vector3d& p : ring) p = form.sculpt.cast(p - Vector3d(0, 0, 2), Vector3d::UnitZ(), 6);
+    push(k < rings ? HalfHead::Hold::free : HalfHead::Hold::fixed);
   }
   half.lip_border = rings;
-  // The red of the lips: two loops between border and line, then the line itself.
-  const auto between = [&](double t, double out) {
+  // The red of the lips: two loops between border and line, then the line itself. Towards the corners the loops run
+  // too close together to be laid on the flesh one by one.
+  const auto between = [&](double t) {
     for (int a = 0; a < count; ++a) {
-      const Vector3d line = lip_line_at(mouth, along(a)), edge = lip_border_at(mouth, a <= turn, along(a));
-      ring[a] = edge + t * (line - edge) + Vector3d(0, 0, out);
+      const Vector3d &at = line[a <= turn ? a : last - a], edge = half.points[half.mouth[half.lip_border][a]];
+      const Vector3d straight = edge + t * (at - edge);
+      const double narrow = std::clamp((along(a) - 0.7) / 0.25, 0.0, 1.0);
+      ring[a] = form.sculpt.cast(straight - Vector3d(0, 0, 2), Vector3d::UnitZ(), 6);
+      ring[a] += narrow * (straight - ring[a]);
     }
   };
-  between(0.33, 0.5);
-  push(HalfHead::Hold::surface);
-  between(0.72, 0.5);
-  push(HalfHead::Hold::surface);
+  between(0.33);
+  push(HalfHead::Hold::fixed);
+  between(0.72);
+  push(HalfHead::Hold::fixed);
   const auto line_ring = [&](double back, double gap) {
     for (int a = 0; a < count; ++a) {
       const double open = std::sin(std::min(1.0, (1 - along(a)) * 3) * std::numbers::pi / 2);
-      ring[a] = lip_line_at(mouth, along(a));
+      ring[a] = line[a <= turn ? a : last - a];
       ring[a].x() *= 1 - 0.02 * back;
       ring[a].y() += (a == turn ? 0 : a < turn ? 0.5 : -0.5) * gap * open;
       ring[a].z() -= back;
     }
   };
-  line_ring(0, mouth.gap);
+  line_ring(0.0, mouth.gap);
   half.lip_contact = static_cast<int>(half.mouth.size());
   push(HalfHead::Hold::fixed);
   line_ring(0.35, mouth.gap);
@@ -91,16 +128,20 @@ void add_mouth(HalfHead& half, const HeadForm& form) {
     const Oval& oval = ovals[k];
     for (int a = 0; a < count; ++a) {
       const double angle = std::numbers::pi / 2 - std::numbers::pi * a / last;
-      const Vector3d line = lip_line_at(mouth, along(a));
+      const Vector3d& lips = line[a <= turn ? a : last - a];
       const double c = std::cos(angle), s = std::sin(angle);
       const double round = std::pow(std::abs(c), 0.8);
       // The first two follow the lips; the others are upright ovals.
       const double z =
-          k < 2 ? line.z() - oval.back
+          k < 2 ? lips.z() - oval.back
                 : mouth.front - 1.2 - oval.back * (mouth.bag_depth - 1.2) - (k == 2 ? 0.8 : 0.3) * c * c;
       ring[a] = {mouth.bag_width * oval.half_width * round,
                  mouth.line + mouth.bag_height * oval.half_height * s, z};
-      if (k == 0) ring[a].x() = line.x() * 0.97;
+      if (k == 0) ring[a].x() = lips.x() * 0.97;
+      // The bag stays under the skin.
+      const double under = form.sculpt.distance(ring[a]) + (k ? 0.3 : 0.2);
+      if (under > 0) ring[a] -= under * form.sculpt.normal(ring[a]);
+      if (a == 0 || a == last) ring[a].x() = 0;
     }
     push(HalfHead::Hold::fixed);
   }

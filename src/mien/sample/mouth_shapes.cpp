@@ -92,7 +92,7 @@ Field lip_roll(const HeadMesh& head, const HeadForm& form, const FaceRegions& re
   return field;
 }
 
-Field lip_press(const HeadMesh& head, const HeadForm& form, const FaceRegions& regions) {
+Field lip_press(const HeadMesh& head, const FaceRegions& regions) {
   Field field(head.points.size(), Vector3d::Zero());
   const int border = head.half.lip_border, contact = head.half.lip_contact;
   const int last = static_cast<int>(head.half.mouth[0].size()) - 1;
@@ -100,13 +100,15 @@ Field lip_press(const HeadMesh& head, const HeadForm& form, const FaceRegions& r
     const LoopPlace place = regions.mouth[v];
     if (place.ring < 1 || place.ring > contact + 1 || place.slot * 2 == last) continue;
     const double t = place.slot * 2 < last ? place.slot / (0.5 * last) : (last - place.slot) / (0.5 * last);
-    const Vector3d line = lip_line_at(form.mouth, t);
+    const Loop& meeting = head.half.mouth[contact];
+    const double middle =
+        (head.points[meeting[place.slot]].y() + head.points[meeting[last - place.slot]].y()) / 2;
     const double out = std::clamp(double(place.ring) / border, 0.0, 1.0);
     // Left and right halves add up to a press of the whole mouth.
     const double x = head.points[v].x() / 1.2;
     const double left = std::clamp(0.5 + 0.5 * x, 0.0, 1.0);
     const double press = place.ring >= contact ? 1.0 : 0.34 * out;
-    field[v] = left * Vector3d(0.06 * out * t, press * (line.y() - head.points[v].y()), -0.12 * out);
+    field[v] = left * Vector3d(0.06 * out * t, press * (middle - head.points[v].y()), -0.12 * out);
   }
   return field;
 }

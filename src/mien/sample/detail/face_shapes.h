@@ -46,6 +46,6 @@ Field mouth_close(const HeadMesh& head, const FaceRegions& regions, const Field&
 Field lips_gathered(const HeadMesh& head, const HeadForm& form, const FaceRegions& regions, double narrow,
                     double open, double forward);
 Field lip_roll(const HeadMesh& head, const HeadForm& form, const FaceRegions& regions, bool upper);
-Field lip_press(const HeadMesh& head, const HeadForm& form, const FaceRegions& regions);
+Field lip_press(const HeadMesh& head, const FaceRegions& regions);
 
 }  // namespace mien::sample

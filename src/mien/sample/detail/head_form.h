@@ -34,14 +34,14 @@ struct MouthForm {
   double lower_border = -7.95;
   double front = 10.6,
          corner_front = 9.3;  ///< z of the line between the lips, at the middle and at the corners
-  double gap = 0.05;          ///< how far the lips are apart at rest
+  double gap = 0.04;          ///< how far the lips are apart at rest
   double bag_width = 2.5, bag_height = 1.7, bag_depth = 5.2;  ///< of the cavity behind the lips
 };
 
 struct NostrilForm {
-  Vector3d centre = Vector3d(0.62, -4.6, 10.75);
+  Vector3d centre = Vector3d(0.62, -4.6, 10.68);
   Vector3d inward = Vector3d(0.1, 0.95, -0.1);  ///< from the opening into the nose
-  double length = 0.46, width = 0.27;           ///< half axes of the opening
+  double length = 0.42, width = 0.26;           ///< half axes of the opening
   double turn = 25;                             ///< of its long axis from straight ahead, towards the middle
   double depth = 0.8;
 };
