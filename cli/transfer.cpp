@@ -2,10 +2,16 @@
 
 #include <fmt/format.h>
 
+#include <filesystem>
+#include <optional>
+#include <system_error>
+
 #include "command.h"
 #include "mien/core/error.h"
+#include "mien/io/file.h"
 #include "mien/io/landmark_file.h"
 #include "mien/io/load.h"
+#include "mien/report/report.h"
 
 namespace mien::cli {
 namespace {
@@ -96,14 +102,38 @@ std::string as_text(const TransferResult& result, const std::string& output) {
   return text;
 }
 
+std::string file_name(const std::string& path) {
+  return std::filesystem::path(path).filename().string();
+}
+
+void write_report(const Report& report, const std::filesystem::path& folder) {
+  std::error_code failure;
+  std::filesystem::create_directories(folder, failure);
+  if (failure)
+    throw io_error("", "the report's folder cannot be made: " + failure.message()).in_file(folder.string());
+  write_file_atomically(folder / "report.html", report.html);
+  write_file_atomically(folder / "report.json", report.json);
+}
+
 void run(Request& request, const Common& common) {
   read_exaggeration(request.exaggerate, request.options);
   const Character source = load_with_landmarks(request.source, request.source_landmarks);
   const Character target = load_with_landmarks(request.target, request.target_landmarks);
   request.options.progress = progress_bar(common);
   const TransferResult result = transfer(source, target, request.options);
+  std::optional<Report> report;
+  if (!request.report.empty())
+    report = make_report({source, target, result, request.options, file_name(request.source),
+                          file_name(request.target), file_name(request.output), request.options.progress});
   save(result.character, request.output, {request.compress});
-  print_result(common, as_text(result, request.output), as_json(result.report, request.output));
+  if (report) write_report(*report, request.report);
+  std::string text = as_text(result, request.output);
+  nlohmann::json json = as_json(result.report, request.output);
+  if (report) {
+    json["report"] = (std::filesystem::path(request.report) / "report.html").string();
+    text += fmt::format("report: {}\n", json["report"].get<std::string>());
+  }
+  print_result(common, text, json);
 }
 
 }  // namespace

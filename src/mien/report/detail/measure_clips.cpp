@@ -1,0 +1,104 @@
+#include "mien/report/detail/measure_clips.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+namespace mien::detail {
+namespace {
+
+std::size_t at(int index) {
+  return static_cast<std::size_t>(index);
+}
+
+constexpr std::size_t most_clips = 6;
+constexpr int curves_a_kind = 3;
+/// Of the face's size: epsilon of closer points (lips that touch) is large and says little.
+constexpr double least_joint_length = 0.05, least_landmark_length = 0.08;
+/// A smaller difference between a copied and a transferred clip is rounding.
+constexpr double same_curve = 1e-4;
+
+/// A point that is followed on both characters.
+struct Followed {
+  std::vector<std::string> names;
+  PointTracks source, target, copied;
+};
+
+std::vector<CurveRow> curves_of(const Followed& followed, double least_length) {
+  std::vector<CurveRow> rows;
+  for (const PointPair& pair : telling_pairs(followed.source, least_length, curves_a_kind)) {
+    if ((followed.target.rest.row(pair.a) - followed.target.rest.row(pair.b)).norm() <= 0) continue;
+    CurveRow row;
+    row.name = followed.names[at(pair.a)] + " \u2013 " + followed.names[at(pair.b)];
+    row.source = relative_deformation(followed.source, pair);
+    row.target = relative_deformation(followed.target, pair);
+    row.copied = relative_deformation(followed.copied, pair);
+    row.target_agreement = compare_curves(row.source, row.target);
+    row.copied_agreement = compare_curves(row.source, row.copied);
+    if (compare_curves(row.target, row.copied).rms_difference < same_curve) row.copied.clear();
+    rows.push_back(std::move(row));
+  }
+  return rows;
+}
+
+struct Clips {
+  const Clip &source, &target, &copied;
+  const std::vector<double>& seconds;
+};
+
+Followed follow_joints(const ReportInput& input, const Clips& clips) {
+  const Character &source = input.source, &target = input.result.character;
+  std::map<std::string, int> target_joint;
+  for (const Skin& skin : target.skins)
+    for (const int node : skin.joints) target_joint.emplace(target.nodes[at(node)].name, node);
+  Followed followed;
+  std::vector<int> from, to;
+  for (const Skin& skin : source.skins)
+    for (const int node : skin.joints) {
+      const auto found = target_joint.find(source.nodes[at(node)].name);
+      if (found == target_joint.end() || std::find(from.begin(), from.end(), node) != from.end()) continue;
+      followed.names.push_back(found->first);
+      from.push_back(node);
+      to.push_back(found->second);
+    }
+  followed.source = track_nodes(source, clips.source, clips.seconds, from);
+  followed.target = track_nodes(target, clips.target, clips.seconds, to);
+  followed.copied = track_nodes(target, clips.copied, clips.seconds, to);
+  return followed;
+}
+
+Followed follow_landmarks(const ReportInput& input, const Clips& clips) {
+  const LandmarkPairs& pairs = input.result.report.pairs;
+  Followed followed;
+  std::vector<SurfacePoint> from, to;
+  for (std::size_t i = 0; i < pairs.names.size(); ++i) {
+    followed.names.push_back(pairs.names[i]);
+    from.push_back(pairs.source[i].at);
+    to.push_back(pairs.target[i].at);
+  }
+  followed.source = track_surface(input.source, clips.source, clips.seconds, from);
+  followed.target = track_surface(input.result.character, clips.target, clips.seconds, to);
+  followed.copied = track_surface(input.result.character, clips.copied, clips.seconds, to);
+  return followed;
+}
+
+}  // namespace
+
+std::vector<ClipRows> measure_clips(const ReportInput& input) {
+  std::vector<ClipRows> rows;
+  const std::vector<Clip>&clips = input.source.clips, &carried = input.result.character.clips;
+  const double unit = input.result.report.unit / input.result.report.similarity.scale;
+  for (std::size_t c = 0; c < std::min({clips.size(), carried.size(), most_clips}); ++c) {
+    const Clip copied = copy_by_name(input.source, clips[c], input.result.character);
+    ClipRows clip{clips[c].name, sample_times(clips[c]), {}, {}};
+    if (clip.seconds.size() < 2) continue;
+    const Clips three{clips[c], carried[c], copied, clip.seconds};
+    if (!input.source.skins.empty() && !input.result.character.skins.empty())
+      clip.joints = curves_of(follow_joints(input, three), least_joint_length * unit);
+    clip.surface = curves_of(follow_landmarks(input, three), least_landmark_length * unit);
+    rows.push_back(std::move(clip));
+  }
+  return rows;
+}
+
+}  // namespace mien::detail

@@ -1,0 +1,144 @@
+#include <fmt/format.h>
+
+#include <limits>
+
+#include "mien/picture/plot.h"
+#include "mien/report/detail/html.h"
+#include "mien/report/detail/page.h"
+#include "mien/report/thesis_times.h"
+
+namespace mien::detail {
+namespace {
+
+std::string plot_of(const ClipRows& clip, const CurveRow& curve) {
+  std::vector<Series> series{{"source", clip.seconds, curve.source}, {"target", clip.seconds, curve.target}};
+  if (!curve.copied.empty()) series.push_back({"target, clip copied unchanged", clip.seconds, curve.copied});
+  PlotOptions options;
+  options.title = curve.name;
+  options.x_label = "seconds";
+  options.y_label = "\u03b5";
+  options.width = 560;
+  options.height = 280;
+  return "<div class=\"plot\">" + line_plot_svg(series, options) + "</div>\n";
+}
+
+std::string curves_of(const ClipRows& clip, const std::vector<CurveRow>& curves, const char* between) {
+  if (curves.empty()) return {};
+  std::string plots;
+  std::vector<std::vector<std::string>> rows;
+  for (const CurveRow& curve : curves) {
+    plots += plot_of(clip, curve);
+    const auto cells = [&](const CurveAgreement& a) {
+      return std::vector<std::string>{fmt::format("{:.3f}", a.correlation),
+                                      fmt::format("{:.3f}", a.rms_difference), fmt::format("{:.2f}", a.gain)};
+    };
+    std::vector<std::string> row{escaped(curve.name)};
+    const auto carried = cells(curve.target_agreement);
+    row.insert(row.end(), carried.begin(), carried.end());
+    const auto copied =
+        curve.copied.empty() ? std::vector<std::string>(3, "same") : cells(curve.copied_agreement);
+    row.insert(row.end(), copied.begin(), copied.end());
+    rows.push_back(std::move(row));
+  }
+  return fmt::format("<h3>{}, between {}</h3>\n<div class=\"plots\">\n", escaped(clip.name), between) +
+         plots + "</div>\n" +
+         table({"distance", "correlation", "rms difference", "gain", "copied: correlation", "rms difference",
+                "gain"},
+               rows);
+}
+
+double seconds_of(const TransferReport& report, std::string_view step) {
+  for (const StepTime& time : report.steps)
+    if (time.step == step) return time.seconds;
+  return std::numeric_limits<double>::quiet_NaN();
+}
+
+/// Seconds as the thesis counts them: shapes one by one.
+double like_thesis(const TransferResult& result, const ThesisStep& step) {
+  const double seconds = seconds_of(result.report, step.step);
+  const std::size_t shapes = result.character.shapes.size();
+  if (!step.each_shape) return seconds;
+  return shapes ? seconds / static_cast<double>(shapes) : std::numeric_limits<double>::quiet_NaN();
+}
+
+std::string time_text(double seconds) {
+  if (seconds != seconds) return "&ndash;";
+  return seconds < 0.0995 ? fmt::format("{:.4f}", seconds) : fmt::format("{:.2f}", seconds);
+}
+
+std::string thesis_table(const PageInput& page) {
+  std::vector<std::string> head{"step, seconds", "this transfer"};
+  if (page.data.thesis) head.push_back("thesis's method,<br>here");
+  for (const ThesisCharacter& character : thesis_characters())
+    head.push_back(fmt::format("{}<br>5.{}, {} tri.", character.name, character.table, character.triangles));
+  std::vector<std::vector<std::string>> rows;
+  for (const ThesisStep& step : thesis_steps()) {
+    std::vector<std::string> row{std::string(step.name), time_text(like_thesis(page.input.result, step))};
+    if (page.data.thesis) row.push_back(time_text(like_thesis(*page.data.thesis, step)));
+    for (const double seconds : step.seconds) row.push_back(fmt::format("{:.2f}", seconds));
+    rows.push_back(std::move(row));
+  }
+  return table(head, rows);
+}
+
+std::string thesis_chart(const PageInput& page) {
+  std::vector<std::string> labels;
+  std::vector<double> here, baseline, then;
+  for (const ThesisStep& step : thesis_steps()) {
+    if (step.step.empty()) continue;
+    labels.push_back(std::string(step.name));
+    here.push_back(like_thesis(page.input.result, step));
+    if (page.data.thesis) baseline.push_back(like_thesis(*page.data.thesis, step));
+    double sum = 0;
+    for (const double seconds : step.seconds) sum += seconds;
+    then.push_back(sum / static_cast<double>(step.seconds.size()));
+  }
+  std::vector<BarGroup> groups{{"this transfer", here}};
+  if (page.data.thesis) groups.push_back({"thesis's method, here", baseline});
+  groups.push_back({"thesis, mean of its six targets", then});
+  PlotOptions options;
+  options.x_label = "seconds";
+  options.width = 760;
+  options.height = 420;
+  return "<div class=\"plot\">" + bar_chart_svg(labels, groups, options) + "</div>\n";
+}
+
+std::string own_steps(const PageInput& page) {
+  std::vector<std::vector<std::string>> rows;
+  double total = 0;
+  for (const StepTime& step : page.input.result.report.steps) {
+    rows.push_back({escaped(step.step), time_text(step.seconds)});
+    total += step.seconds;
+  }
+  rows.push_back({"<b>total</b>", "<b>" + time_text(total) + "</b>"});
+  return "<h3>All steps of this transfer</h3>\n" + table({"step", "seconds"}, rows);
+}
+
+}  // namespace
+
+std::string clips_section(const PageInput& page) {
+  std::string curves;
+  for (const ClipRows& clip : page.data.clips)
+    curves +=
+        curves_of(clip, clip.joints, "joints") + curves_of(clip, clip.surface, "landmarks on the surface");
+  if (curves.empty()) return {};
+  return "<h2 id=\"clips\">Relative deformation</h2>\n<p>How the distance between two points changes in a "
+         "clip, "
+         "&epsilon; = (l<sub>1</sub> &minus; l<sub>0</sub>) / l<sub>0</sub> with l<sub>0</sub> the distance "
+         "at rest: the "
+         "thesis's figure 5.3. A clip that keeps its intensity follows the source's curve; one that is "
+         "copied without being "
+         "transferred comes out weak, strong or bent. The distances are those that change most.</p>\n" +
+         curves;
+}
+
+std::string seconds_section(const PageInput& page) {
+  return "<h2 id=\"seconds\">Seconds</h2>\n<p>In the form of tables 5.1 and 5.2 of the thesis (V. Costa "
+         "Orvalho, Reusable "
+         "Facial Rigging and Animation, 2007), whose figures were measured on its machines of the time with "
+         "targets of about "
+         "3,000 triangles.</p>\n" +
+         thesis_table(page) + thesis_chart(page) + own_steps(page);
+}
+
+}  // namespace mien::detail

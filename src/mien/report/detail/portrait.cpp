@@ -1,0 +1,78 @@
+#include "mien/report/detail/portrait.h"
+
+#include "mien/report/detail/face_box.h"
+#include "mien/report/detail/poses.h"
+
+namespace mien::detail {
+namespace {
+
+/// Of the landmarks' box: forehead and sides of the face.
+constexpr double around = 0.16;
+/// Where an exaggerated shape may take a landmark before it is cut off.
+constexpr double most_around = 0.45;
+
+PointsD places(const Character& character, const std::vector<Points>& posed,
+               const std::vector<LandmarkPoint>& landmarks) {
+  PointsD points(static_cast<Eigen::Index>(landmarks.size()), 3);
+  for (std::size_t i = 0; i < landmarks.size(); ++i) {
+    const auto part = static_cast<std::size_t>(landmarks[i].at.part);
+    points.row(static_cast<Eigen::Index>(i)) =
+        position_of(character.parts[part].mesh, posed[part], landmarks[i].at).transpose();
+  }
+  return points;
+}
+
+/// The landmarks' box in the frame of `facing`, with room for where shapes take them; its corners in model space.
+Points corners_of_face(const Character& character, const std::vector<Points>& rest,
+                       const std::vector<LandmarkPoint>& landmarks, const Eigen::Matrix3d& facing) {
+  const auto seen = [&](const std::vector<Points>& posed) {
+    return PointsD(places(character, posed, landmarks) * facing.transpose());
+  };
+  const PointsD neutral = seen(rest);
+  const Box limit = grown_box(neutral, most_around);
+  Box box = grown_box(neutral, around);
+  const double room = 0.4 * around * grown_box(neutral, 0).diagonal();
+  for (std::size_t s = 0; s < character.shapes.size(); ++s) {
+    const Box reached = grown_box(seen(in_shape(character, s)), 0);
+    box.low = box.low.cwiseMin((reached.low.array() - room).matrix()).cwiseMax(limit.low);
+    box.high = box.high.cwiseMax((reached.high.array() + room).matrix()).cwiseMin(limit.high);
+  }
+  Points corners(8, 3);
+  for (int c = 0; c < 8; ++c) {
+    const Eigen::Vector3d corner(c & 1 ? box.high.x() : box.low.x(), c & 2 ? box.high.y() : box.low.y(),
+                                 c & 4 ? box.high.z() : box.low.z());
+    corners.row(c) = (facing.transpose() * corner).transpose().cast<float>();
+  }
+  return corners;
+}
+
+FrameOptions frame_of(const RenderOptions& options, View view, const Eigen::Matrix3d& facing) {
+  FrameOptions frame;
+  frame.view = view;
+  frame.aspect = static_cast<double>(options.width) / options.height;
+  frame.facing = facing;
+  return frame;
+}
+
+}  // namespace
+
+Portrait::Portrait(const Character& character, const std::vector<LandmarkPoint>& landmarks,
+                   const Eigen::Matrix3d& facing)
+    : character_(character), facing_(facing), rest_(at_rest(character)), renderer_(character) {
+  face_corners_ = corners_of_face(character, rest_, landmarks, facing);
+}
+
+Picture Portrait::head(const Renderer& renderer, const std::vector<Points>& posed, View view,
+                       RenderOptions options) const {
+  options.camera = frame_head(character_, rest_, frame_of(options, view, facing_));
+  return renderer.render(posed, options);
+}
+
+Picture Portrait::face(const std::vector<Points>& posed, RenderOptions options) const {
+  FrameOptions frame = frame_of(options, View::front, facing_);
+  frame.margin = 0;
+  options.camera = frame_points(face_corners_, frame);
+  return renderer_.render(posed, options);
+}
+
+}  // namespace mien::detail
