@@ -1,0 +1,92 @@
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+
+#include "full_character.h"
+#include "mien/io/load.h"
+#include "support.h"
+
+namespace mien {
+namespace {
+
+using test::Folder;
+
+bool runs(const std::string& command) {
+  return std::system((command + " >/dev/null 2>&1").c_str()) == 0;
+}
+
+/// The folder of the Khronos validator, installed once into the build folder; empty when that cannot be done.
+std::filesystem::path validator() {
+  const std::filesystem::path folder =
+      std::filesystem::path(MIEN_PROGRAM).parent_path() / "tests" / "gltf-validator";
+  if (std::filesystem::exists(folder / "node_modules/gltf-validator/package.json")) return folder;
+  std::filesystem::create_directories(folder);
+  const bool installed =
+      runs("cd '" + folder.string() +
+           "' && timeout 60 npm install --no-audit --no-fund --prefix . gltf-validator@2.0.0-dev.3.10");
+  return installed ? folder : std::filesystem::path();
+}
+
+/// What the validator has to say about the files; empty: no errors and no warnings.
+std::string issues_of(const std::filesystem::path& packages,
+                      const std::vector<std::filesystem::path>& files) {
+  const Folder folder;
+  std::string command = "node '" MIEN_SOURCE "/tests/tools/validate_gltf.mjs' '" + packages.string() + "'";
+  for (const std::filesystem::path& file : files) command += " '" + file.string() + "'";
+  const int code = std::system((command + " > '" + (folder / "out.txt").string() + "' 2>&1").c_str());
+  const std::vector<std::uint8_t> text = read_file(folder / "out.txt");
+  return code == 0 ? std::string() : "issues:\n" + std::string(text.begin(), text.end());
+}
+
+class GltfValidator : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (!runs("node --version") || !runs("npm --version")) GTEST_SKIP() << "node and npm are not installed";
+    packages_ = validator();
+    if (packages_.empty()) GTEST_SKIP() << "npm cannot install gltf-validator here";
+  }
+  /// Writes in both forms, and compressed.
+  void write(const Character& character, const std::string& name) {
+    SaveOptions small;
+    small.compress = true;
+    save(character, folder_ / (name + ".glb"));
+    save(character, folder_ / (name + ".gltf"));
+    save(character, folder_ / (name + ".small.glb"), small);
+    for (const char* extension : {".glb", ".gltf", ".small.glb"})
+      files_.push_back(folder_ / (name + extension));
+  }
+  Folder folder_;
+  std::filesystem::path packages_;
+  std::vector<std::filesystem::path> files_;
+};
+
+TEST_F(GltfValidator, finds_faults_at_all) {
+  EXPECT_NE(
+      issues_of(packages_, {folder_.write("bad.gltf", R"({"asset": {"version": "2.0"}, "nodes": [7]})")}),
+      "");
+}
+
+TEST_F(GltfValidator, finds_no_error_and_no_warning_in_what_we_write) {
+  write(test::full_character(), "full");
+  Character c = test::full_character();
+  c.nodes[6].parent = 7;
+  c.nodes[3].parent = -1;
+  c.skins[0].has_inverse_bind = false;
+  write(c, "roots");
+  Character strip;
+  strip.parts = {test::seamed_part()};
+  write(strip, "strip");
+  EXPECT_EQ(issues_of(packages_, files_), "");
+}
+
+TEST_F(GltfValidator, finds_no_error_and_no_warning_in_real_faces) {
+  const std::filesystem::path data(MIEN_SHARED_DATA);
+  if (!std::filesystem::exists(data)) GTEST_SKIP() << "no shared data";
+  for (const char* name : {"makehuman/caucasian_male_young.glb", "facecap/facecap.glb", "makehuman/x_elf.obj",
+                           "cases/C_mhrig_afr/source.glb", "mediapipe/canonical_face_model.obj"})
+    write(load(data / name), std::filesystem::path(name).stem().string());
+  EXPECT_EQ(issues_of(packages_, files_), "");
+}
+
+}  // namespace
+}  // namespace mien
