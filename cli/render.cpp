@@ -14,9 +14,9 @@
 #include "mien/io/file.h"
 #include "mien/io/landmark_file.h"
 #include "mien/io/load.h"
+#include "mien/io/weights_file.h"
 #include "mien/picture/region.h"
 #include "mien/picture/sheet.h"
-#include "weights.h"
 
 namespace mien::cli {
 namespace {
