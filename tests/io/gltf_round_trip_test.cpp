@@ -171,6 +171,18 @@ TEST(gltf_round_trip, a_part_without_a_node_gets_one) {
   EXPECT_EQ(again.parts[0].name, "strip");
 }
 
+TEST(gltf_round_trip, a_part_without_faces_comes_back) {
+  const Folder folder;
+  Character c;
+  c.parts.resize(1);
+  c.parts[0].name = "points";
+  c.parts[0].mesh.positions = Points::Random(5, 3);
+  save(c, folder / "points.glb");
+  const Character again = load(folder / "points.glb");
+  ASSERT_EQ(again.parts.size(), 1u);
+  test::expect_same_mesh(c.parts[0].mesh, again.parts[0].mesh);
+}
+
 TEST(gltf_round_trip, real_characters_come_back) {
   const std::filesystem::path data(MIEN_SHARED_DATA);
   if (!std::filesystem::exists(data)) GTEST_SKIP() << "no shared data";

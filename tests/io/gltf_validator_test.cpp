@@ -76,6 +76,9 @@ TEST_F(GltfValidator, finds_no_error_and_no_warning_in_what_we_write) {
   Character strip;
   strip.parts = {test::seamed_part()};
   write(strip, "strip");
+  strip.parts[0].mesh = Mesh{};
+  strip.parts[0].mesh.positions = Points::Random(5, 3);
+  write(strip, "points");
   EXPECT_EQ(issues_of(packages_, files_), "");
 }
 

@@ -18,6 +18,7 @@ class Validator {
 
  private:
   void check_nodes();
+  void check_materials();
   void check_skins();
   void check_mesh(const Part& part, const std::string& place);
   void check_faces(const Mesh& mesh, const std::string& place);
@@ -97,6 +98,12 @@ void Validator::check_nodes() {
     }
 }
 
+void Validator::check_materials() {
+  for (const Material& material : character_.appearance.materials)
+    if (!material.base_color.allFinite())
+      add("material " + material.name, "has a colour that is not finite", "give numbers in [0, 1]");
+}
+
 void Validator::check_skins() {
   for (std::size_t s = 0; s < character_.skins.size(); ++s) {
     const Skin& skin = character_.skins[s];
@@ -115,7 +122,7 @@ void Validator::check_skins() {
       add(place, "has " + text_of(skin.inverse_bind.size()) + " inverse bind matrices",
           "there are " + text_of(skin.joints.size()) + " joints");
     for (const Eigen::Matrix4d& matrix : skin.inverse_bind)
-      if (!matrix.allFinite()) {
+      if (!matrix.cast<float>().allFinite()) {
         add(place, "has an inverse bind matrix that is not finite", "give finite numbers");
         break;
       }
@@ -318,6 +325,7 @@ void Validator::check_landmarks() {
 
 std::vector<Problem> Validator::run() {
   check_nodes();
+  check_materials();
   check_skins();
   for (std::size_t p = 0; p < character_.parts.size(); ++p) {
     const Part& part = character_.parts[p];

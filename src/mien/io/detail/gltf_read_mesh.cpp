@@ -12,7 +12,7 @@
 namespace mien::detail {
 namespace {
 
-enum Mode { triangles = 4, triangle_strip = 5, triangle_fan = 6 };
+enum Mode { points = 0, triangles = 4, triangle_strip = 5, triangle_fan = 6 };
 
 /// A run of vertices that one or more primitives index.
 struct Range {
@@ -60,9 +60,12 @@ class MeshReader {
 MeshData MeshReader::read(const JsonObject& mesh) {
   Json carried = Json::array();
   bool carries = false;
+  // Points and lines are no surface, but mien writes a part without faces as points.
+  const bool keeps_points = mesh.has("extensions") && mesh.object("extensions").has(vendor_extension) &&
+                            mesh.object("extensions").object(vendor_extension).truth_or("points", false);
   for (const JsonObject& primitive : mesh.objects("primitives")) {
     const std::int64_t mode = primitive.integer_or("mode", triangles, 0, 6);
-    if (mode < triangles) continue;  // points and lines are no surface
+    if (mode < triangles && !(keeps_points && mode == points)) continue;
     add_primitive(primitive);
     const std::string others = primitive.others({"attributes", "indices", "material", "mode", "targets"});
     carries = carries || !others.empty();
@@ -226,6 +229,7 @@ void MeshReader::push_triangle(int a, int b, int c, const Range& range) {
 }
 
 void MeshReader::append_faces(const JsonObject& primitive, const Range& range) {
+  if (primitive.integer_or("mode", triangles, 0, 6) == points) return;
   std::vector<std::uint32_t> indices;
   if (const int index = accessor(primitive, "indices"); index >= 0) {
     indices = document_.integers(index, 1);

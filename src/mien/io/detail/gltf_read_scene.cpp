@@ -238,7 +238,8 @@ void read_appearance(GltfDocument& document, Character& character) {
     if (source.has("pbrMetallicRoughness")) {
       const std::vector<double> color = source.object("pbrMetallicRoughness").numbers("baseColorFactor");
       if (color.size() == 4)
-        material.base_color = Eigen::Map<const Eigen::Vector4d>(color.data()).cast<float>();
+        material.base_color =
+            Eigen::Map<const Eigen::Vector4d>(color.data()).cwiseMax(0).cwiseMin(1).cast<float>();
     }
     material.carried = json_text(source.json());
     appearance.materials.push_back(std::move(material));

@@ -270,6 +270,7 @@ Json vendor_mesh(const Mesh& mesh, const SplitMesh& split, bool normals_computed
       vendor["groups"].push_back(std::move(description));
     }
   }
+  if (mesh.faces.empty()) vendor["points"] = true;
   if (normals_computed) vendor["normalsComputed"] = true;
   if (!vendor.empty()) vendor["vertexCount"] = split.vertex_count;
   return vendor;

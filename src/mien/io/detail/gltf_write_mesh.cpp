@@ -199,7 +199,10 @@ Json MeshWriter::write_primitive(const FaceGroup& group, const WrittenRange& ran
         indices.push_back(static_cast<std::uint32_t>(split_.corner_row[first + corner] - first_row));
   }
   Json primitive = {{"attributes", range.attributes}};
-  primitive["indices"] = builder_.add_triangles(indices, static_cast<std::uint32_t>(rows));
+  if (indices.empty())
+    primitive["mode"] = 0;  // points: glTF has no triangles without corners
+  else
+    primitive["indices"] = builder_.add_triangles(indices, static_cast<std::uint32_t>(rows));
   if (group.material >= 0) primitive["material"] = group.material;
   if (!range.targets.empty()) primitive["targets"] = range.targets;
   return primitive;
