@@ -219,7 +219,7 @@ Mesh make_brows(const BrowForm& form, const Sculpt& sculpt) {
     for (const int i : {0, length})
       for (int j = 0; j < section / 2 - 1; ++j)
         out.face({id(i, j), id(i, j + 1), id(i, section - 2 - j), id(i, section - 1 - j)},
-                 (side < 0) != (i == length));
+                 (side > 0) != (i == length));
   }
   return out.finish();
 }
