@@ -25,6 +25,7 @@ class LandmarkWriter {
     hide(head.half.ear, 1);
   }
 
+  /// The closest vertex outside that is no landmark yet.
   int closest(const Vector3d& p) const {
     int best = -1;
     double least = 1e300;
@@ -39,6 +40,8 @@ class LandmarkWriter {
   }
   int twin(int vertex) const { return head_.mirror[vertex]; }
   void put(int number, int vertex) {
+    for (int v : {vertex, twin(vertex)})
+      if (v < static_cast<int>(outer_.size())) outer_[v] = 0;
     Landmark landmark;
     landmark.name = "ibug_" + std::to_string(number);
     landmark.at = at(vertex);
@@ -126,7 +129,7 @@ void add_landmarks(Character& character, const HeadMesh& head, const CharacterFo
   // Curves run beside the points, so that no sample falls on one of them.
   std::vector<int> above, mirrored_above;
   for (const Vector3d& p : given.brow) {
-    const int v = out.closest(p + Vector3d(0.25, 0.055 * (given.jaw[8].y() - given.jaw[0].y()), 0));
+    const int v = out.closest(p + Vector3d(0.25, 0.06 * (given.jaw[8].y() - given.jaw[0].y()), 0));
     if (!above.empty() && above.back() == v) continue;
     above.push_back(v);
     mirrored_above.push_back(out.twin(v));

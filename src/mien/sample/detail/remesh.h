@@ -8,8 +8,8 @@
 namespace mien::sample {
 
 struct Remeshed {
-  Mesh mesh;                     ///< triangles in the groups of the input, no UVs
-  std::vector<int> new_vertex;   ///< per vertex of the input; -1: merged away
+  Mesh mesh;                    ///< triangles in the groups of the input, no UVs
+  std::vector<int> new_vertex;  ///< per vertex of the input; -1: merged away
 };
 
 /// Merges the ends of edges shorter than wanted and turns edges towards even triangles.
