@@ -72,17 +72,18 @@ figure img{display:block;width:100%;height:auto;border-radius:6px;background:var
 figcaption{font-size:.85rem;padding:4px 2px;overflow-wrap:anywhere}
 figcaption b{color:var(--ink)}
 .three{display:grid;grid-template-columns:repeat(3,1fr);gap:10px;margin:12px 0}
-.maps{display:grid;grid-template-columns:repeat(auto-fill,minmax(250px,1fr));gap:12px;margin:12px 0}
-.cards{display:grid;grid-template-columns:repeat(auto-fill,minmax(270px,1fr));gap:14px 12px;margin:12px 0}
+.maps{display:grid;grid-template-columns:repeat(auto-fill,minmax(min(100%,300px),1fr));gap:12px;margin:12px 0}
+.cards{display:grid;grid-template-columns:repeat(auto-fill,minmax(min(100%,330px),1fr));gap:12px;margin:12px 0}
 .card{background:var(--card);border:1px solid var(--line);border-radius:8px;padding:6px}
 .pair{display:grid;grid-template-columns:1fr 1fr;gap:4px}
+.pair img{display:block;width:100%;height:auto;border-radius:5px;background:var(--ground)}
 .card h4{font-size:.9rem;margin:4px 2px;overflow-wrap:anywhere}
 .card p{font-size:.8rem;margin:2px;color:var(--soft);font-variant-numeric:tabular-nums}
 .scroll{overflow-x:auto}
-table{border-collapse:collapse;font-size:.88rem;font-variant-numeric:tabular-nums;margin:8px 0}
-th,td{padding:4px 10px;border-bottom:1px solid var(--line);text-align:right;white-space:nowrap}
+table{border-collapse:collapse;font-size:.86rem;font-variant-numeric:tabular-nums;margin:8px 0}
+th,td{padding:4px 8px;border-bottom:1px solid var(--line);text-align:right;white-space:nowrap}
 th:first-child,td:first-child{text-align:left}
-table.text td,table.text th{text-align:left;white-space:normal}
+.text th,.text td{text-align:left}
 thead th{font-weight:600;color:var(--soft);vertical-align:bottom}
 .plots{display:grid;grid-template-columns:repeat(auto-fill,minmax(min(100%,480px),1fr));gap:12px}
 .plot{background:#fff;border:1px solid var(--line);border-radius:8px;padding:6px}

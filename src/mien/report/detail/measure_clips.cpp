@@ -12,7 +12,9 @@ std::size_t at(int index) {
 }
 
 constexpr std::size_t most_clips = 6;
-constexpr int curves_a_kind = 3;
+constexpr std::size_t curves_a_kind = 4;
+/// Pairs looked at: some of the source's telling pairs lie too close on the target.
+constexpr int candidates = 12;
 /// Of the face's size: epsilon of closer points (lips that touch) is large and says little.
 constexpr double least_joint_length = 0.05, least_landmark_length = 0.08;
 /// A smaller difference between a copied and a transferred clip is rounding.
@@ -24,10 +26,17 @@ struct Followed {
   PointTracks source, target, copied;
 };
 
-std::vector<CurveRow> curves_of(const Followed& followed, double least_length) {
+double length_at_rest(const PointTracks& tracks, PointPair pair) {
+  return (tracks.rest.row(pair.a) - tracks.rest.row(pair.b)).norm();
+}
+
+/// `unit` and `target_unit`: the face's size on both sides.
+std::vector<CurveRow> curves_of(const Followed& followed, double least_length, double unit,
+                                double target_unit) {
   std::vector<CurveRow> rows;
-  for (const PointPair& pair : telling_pairs(followed.source, least_length, curves_a_kind)) {
-    if ((followed.target.rest.row(pair.a) - followed.target.rest.row(pair.b)).norm() <= 0) continue;
+  for (const PointPair& pair : telling_pairs(followed.source, least_length * unit, candidates)) {
+    if (rows.size() == curves_a_kind) break;
+    if (length_at_rest(followed.target, pair) < 0.8 * least_length * target_unit) continue;
     CurveRow row;
     row.name = followed.names[at(pair.a)] + " \u2013 " + followed.names[at(pair.b)];
     row.source = relative_deformation(followed.source, pair);
@@ -87,15 +96,16 @@ Followed follow_landmarks(const ReportInput& input, const Clips& clips) {
 std::vector<ClipRows> measure_clips(const ReportInput& input) {
   std::vector<ClipRows> rows;
   const std::vector<Clip>&clips = input.source.clips, &carried = input.result.character.clips;
-  const double unit = input.result.report.unit / input.result.report.similarity.scale;
+  const double target_unit = input.result.report.unit,
+               unit = target_unit / input.result.report.similarity.scale;
   for (std::size_t c = 0; c < std::min({clips.size(), carried.size(), most_clips}); ++c) {
     const Clip copied = copy_by_name(input.source, clips[c], input.result.character);
     ClipRows clip{clips[c].name, sample_times(clips[c]), {}, {}};
     if (clip.seconds.size() < 2) continue;
     const Clips three{clips[c], carried[c], copied, clip.seconds};
     if (!input.source.skins.empty() && !input.result.character.skins.empty())
-      clip.joints = curves_of(follow_joints(input, three), least_joint_length * unit);
-    clip.surface = curves_of(follow_landmarks(input, three), least_landmark_length * unit);
+      clip.joints = curves_of(follow_joints(input, three), least_joint_length, unit, target_unit);
+    clip.surface = curves_of(follow_landmarks(input, three), least_landmark_length, unit, target_unit);
     rows.push_back(std::move(clip));
   }
   return rows;

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <limits>
 
 #include "mien/picture/plot.h"
@@ -22,29 +23,35 @@ std::string plot_of(const ClipRows& clip, const CurveRow& curve) {
   return "<div class=\"plot\">" + line_plot_svg(series, options) + "</div>\n";
 }
 
+std::vector<std::string> cells_of(const CurveAgreement& agreement) {
+  return {fmt::format("{:.3f}", agreement.correlation), fmt::format("{:.3f}", agreement.rms_difference),
+          fmt::format("{:.2f}", agreement.gain)};
+}
+
+bool copy_differs(const std::vector<CurveRow>& curves) {
+  return std::any_of(curves.begin(), curves.end(),
+                     [](const CurveRow& curve) { return !curve.copied.empty(); });
+}
+
 std::string curves_of(const ClipRows& clip, const std::vector<CurveRow>& curves, const char* between) {
   if (curves.empty()) return {};
+  const bool copied = copy_differs(curves);
   std::string plots;
+  std::vector<std::string> head{"distance", "correlation", "rms difference", "gain"};
+  if (copied) head.insert(head.end(), {"copied: correlation", "rms difference", "gain"});
   std::vector<std::vector<std::string>> rows;
   for (const CurveRow& curve : curves) {
     plots += plot_of(clip, curve);
-    const auto cells = [&](const CurveAgreement& a) {
-      return std::vector<std::string>{fmt::format("{:.3f}", a.correlation),
-                                      fmt::format("{:.3f}", a.rms_difference), fmt::format("{:.2f}", a.gain)};
-    };
     std::vector<std::string> row{escaped(curve.name)};
-    const auto carried = cells(curve.target_agreement);
-    row.insert(row.end(), carried.begin(), carried.end());
-    const auto copied =
-        curve.copied.empty() ? std::vector<std::string>(3, "same") : cells(curve.copied_agreement);
-    row.insert(row.end(), copied.begin(), copied.end());
+    for (std::string& cell : cells_of(curve.target_agreement)) row.push_back(std::move(cell));
+    if (copied)
+      for (std::string& cell : cells_of(curve.copied_agreement)) row.push_back(std::move(cell));
     rows.push_back(std::move(row));
   }
-  return fmt::format("<h3>{}, between {}</h3>\n<div class=\"plots\">\n", escaped(clip.name), between) +
-         plots + "</div>\n" +
-         table({"distance", "correlation", "rms difference", "gain", "copied: correlation", "rms difference",
-                "gain"},
-               rows);
+  std::string text =
+      fmt::format("<h3>{}, between {}</h3>\n<div class=\"plots\">\n", escaped(clip.name), between);
+  text += plots + "</div>\n" + table(head, rows);
+  return text;
 }
 
 double seconds_of(const TransferReport& report, std::string_view step) {
@@ -63,6 +70,7 @@ double like_thesis(const TransferResult& result, const ThesisStep& step) {
 
 std::string time_text(double seconds) {
   if (seconds != seconds) return "&ndash;";
+  if (seconds < 1e-4) return "&lt; 0.0001";
   return seconds < 0.0995 ? fmt::format("{:.4f}", seconds) : fmt::format("{:.2f}", seconds);
 }
 
@@ -70,7 +78,7 @@ std::string thesis_table(const PageInput& page) {
   std::vector<std::string> head{"step, seconds", "this transfer"};
   if (page.data.thesis) head.push_back("thesis's method,<br>here");
   for (const ThesisCharacter& character : thesis_characters())
-    head.push_back(fmt::format("{}<br>5.{}, {} tri.", character.name, character.table, character.triangles));
+    head.push_back(fmt::format("{}<br>5.{}", character.name, character.table));
   std::vector<std::vector<std::string>> rows;
   for (const ThesisStep& step : thesis_steps()) {
     std::vector<std::string> row{std::string(step.name), time_text(like_thesis(page.input.result, step))};
@@ -118,9 +126,16 @@ std::string own_steps(const PageInput& page) {
 
 std::string clips_section(const PageInput& page) {
   std::string curves;
-  for (const ClipRows& clip : page.data.clips)
-    curves +=
+  for (const ClipRows& clip : page.data.clips) {
+    const std::string one =
         curves_of(clip, clip.joints, "joints") + curves_of(clip, clip.surface, "landmarks on the surface");
+    curves += one;
+    if (!one.empty() && !copy_differs(clip.joints) && !copy_differs(clip.surface))
+      curves +=
+          "<p class=\"soft\">Copying this clip unchanged gives the same: it holds rotations and shape "
+          "weights alone, "
+          "which have no length.</p>\n";
+  }
   if (curves.empty()) return {};
   return "<h2 id=\"clips\">Relative deformation</h2>\n<p>How the distance between two points changes in a "
          "clip, "
@@ -128,7 +143,9 @@ std::string clips_section(const PageInput& page) {
          "at rest: the "
          "thesis's figure 5.3. A clip that keeps its intensity follows the source's curve; one that is "
          "copied without being "
-         "transferred comes out weak, strong or bent. The distances are those that change most.</p>\n" +
+         "transferred comes out weak, strong or bent. Gain is the factor that brings the source's curve "
+         "closest. The distances "
+         "are those that change most.</p>\n" +
          curves;
 }
 

@@ -97,7 +97,7 @@ std::string pieces_section(const PageInput& page) {
   std::vector<std::vector<std::string>> rows;
   for (const PieceReport& piece : pieces)
     rows.push_back({escaped(piece.piece), escaped(piece.kind), escaped(piece.way)});
-  return text + table({"piece", "kind", "moves with"}, rows);
+  return text + "<div class=\"text\">" + table({"piece", "kind", "moves with"}, rows) + "</div>\n";
 }
 
 }  // namespace mien::detail

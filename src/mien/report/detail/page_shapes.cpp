@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cctype>
 
+#include "mien/core/parallel.h"
 #include "mien/report/detail/html.h"
 #include "mien/report/detail/page.h"
 #include "mien/report/detail/poses.h"
@@ -12,6 +13,8 @@ namespace {
 
 constexpr int cell_width = 190, cell_height = 210, wide_width = 320, wide_height = 350;
 constexpr std::size_t telling_count = 4;
+/// Pictures are small: several are drawn side by side, between two looks at the progress.
+constexpr std::size_t shapes_at_once = 8;
 
 /// Marked where the target folds more than the source does.
 std::string flips_of(int flips, int source_flips) {
@@ -34,15 +37,13 @@ std::vector<std::size_t> telling_shapes(const std::vector<ShapeRow>& shapes) {
   const auto add = [&](std::size_t s) {
     if (std::find(chosen.begin(), chosen.end(), s) == chosen.end()) chosen.push_back(s);
   };
-  for (const auto* words : {"jawopen", "mouth_open", "mouthopen", "jaw"}) {
-    if (!chosen.empty()) break;
-    const auto found = std::find_if(order.begin(), order.end(),
-                                    [&](std::size_t s) { return name_holds(shapes[s].name, words); });
-    if (found != order.end()) add(*found);
-  }
-  const auto blink = std::find_if(order.begin(), order.end(),
-                                  [&](std::size_t s) { return name_holds(shapes[s].name, "blink"); });
-  if (blink != order.end()) add(*blink);
+  const auto add_named = [&](std::initializer_list<std::string_view> words) {
+    for (const std::string_view word : words)
+      for (const std::size_t s : order)
+        if (name_holds(shapes[s].name, word)) return add(s);
+  };
+  add_named({"jawopen", "jaw_open", "mouth-open", "mouth_open", "mouthopen", "jaw"});
+  add_named({"blink", "eye-left-closure", "eyesclosed", "eye_close"});
   for (const std::size_t s : order)
     if (chosen.size() < telling_count) add(s);
   return chosen;
@@ -69,6 +70,19 @@ std::string shape_table(const PageInput& page) {
   return "<details><summary>All shapes in figures</summary>\n" + table(head, rows) + "</details>\n";
 }
 
+std::string shape_card(const PageInput& page, std::size_t s) {
+  const ShapeRow& shape = page.data.shapes[s];
+  const RenderOptions options = sized(cell_width, cell_height);
+  return "<div class=\"card\"><div class=\"pair\">" +
+         image(page.source.face(in_shape(page.input.source, s), options), shape.name + " on the source") +
+         image(page.target.face(in_shape(page.input.result.character, s), options),
+               shape.name + " on the target") +
+         "</div><h4>" + escaped(shape.name) + "</h4><p>" +
+         fmt::format("flips {} / {} &middot; stretch {:.1f} / {:.1f}", shape.source_flips,
+                     flips_of(shape.flips, shape.source_flips), shape.source_stretch, shape.stretch) +
+         "</p></div>\n";
+}
+
 }  // namespace
 
 std::string shapes_section(const PageInput& page) {
@@ -79,20 +93,14 @@ std::string shapes_section(const PageInput& page) {
       "turn over, source / target; stretch is the worst edge, times its length at rest.</p>\n<div "
       "class=\"cards\">\n",
       page.data.shapes.size());
-  const RenderOptions options = sized(cell_width, cell_height);
-  for (std::size_t s = 0; s < page.data.shapes.size(); ++s) {
-    const ShapeRow& shape = page.data.shapes[s];
-    const double done = static_cast<double>(s) / static_cast<double>(page.data.shapes.size());
+  std::vector<std::string> cards(page.data.shapes.size());
+  for (std::size_t first = 0; first < cards.size(); first += shapes_at_once) {
+    const double done = static_cast<double>(first) / static_cast<double>(cards.size());
     report_progress(page.input.progress, "report: shapes", 0.4 + 0.45 * done);
-    text += "<div class=\"card\"><div class=\"pair\">" +
-            image(page.source.face(in_shape(page.input.source, s), options), shape.name + " on the source") +
-            image(page.target.face(in_shape(page.input.result.character, s), options),
-                  shape.name + " on the target") +
-            "</div><h4>" + escaped(shape.name) + "</h4><p>" +
-            fmt::format("flips {} / {} &middot; stretch {:.1f} / {:.1f}", shape.source_flips,
-                        flips_of(shape.flips, shape.source_flips), shape.source_stretch, shape.stretch) +
-            "</p></div>\n";
+    parallel_for(std::min(shapes_at_once, cards.size() - first), 1,
+                 [&](std::size_t k, std::size_t) { cards[first + k] = shape_card(page, first + k); });
   }
+  for (const std::string& card : cards) text += card;
   return text + "</div>\n" + shape_table(page);
 }
 

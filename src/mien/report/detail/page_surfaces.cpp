@@ -11,7 +11,9 @@ namespace mien::detail {
 namespace {
 
 constexpr int head_width = 380, head_height = 430, map_width = 340, map_height = 380;
-constexpr int joint_width = 210, joint_height = 240;
+constexpr int joint_width = 180, joint_height = 206;
+/// The darkest colour of the distance map, percent of the face: the same on every report.
+constexpr double distance_shown = 1;
 
 std::vector<Marker> markers_at(const Character& character, const std::vector<Points>& posed,
                                const std::vector<LandmarkPoint>& landmarks) {
@@ -46,15 +48,16 @@ std::string distance_maps(const PageInput& page) {
   const TransferReport& report = page.input.result.report;
   std::vector<Eigen::VectorXf> percent;
   for (const Eigen::VectorXf& part : report.distance) percent.push_back(100 * part);
-  const double high = std::max(0.5, std::ceil(400 * page.data.distance_95) / 2);
-  const RenderOptions options = with_map(sized(map_width, map_height), percent, high, "% of the face");
+  const RenderOptions options =
+      with_map(sized(map_width, map_height), percent, distance_shown, "% of the face");
   const std::string caption = fmt::format(
       "<b>Guide to target.</b> Median {:.2f} %, 95 of 100 vertices below {:.2f} %, worst {:.1f} %.",
       100 * page.data.distance_median, 100 * page.data.distance_95, 100 * page.data.distance_worst);
   return figure(page.target.head(page.target.rest(), View::front, options), "distance from guide to target",
                 caption) +
          figure(page.target.head(page.target.rest(), View::three_quarter, options),
-                "distance from guide to target, three-quarter", "<b>Guide to target</b>, from the side.");
+                "distance from guide to target, three-quarter",
+                "<b>Guide to target</b>, from the side. Dark: 1 % or more.");
 }
 
 std::string filled_map(const PageInput& page) {
@@ -72,11 +75,12 @@ std::string filled_map(const PageInput& page) {
 
 std::string fold_maps(const PageInput& page) {
   if (page.data.shapes.empty()) return {};
-  const double high = std::max({1.f, largest(page.data.folds), largest(page.data.thesis_folds)});
+  const double high =
+      std::clamp(std::max(largest(page.data.folds), largest(page.data.thesis_folds)), 1.f, 4.f);
   const RenderOptions options = sized(map_width, map_height);
-  std::string text =
-      figure(page.target.face(page.target.rest(), with_map(options, page.data.folds, high, "shapes")),
-             "folds", "<b>Folds.</b> In how many shapes a triangle turns over.");
+  std::string text = figure(
+      page.target.face(page.target.rest(), with_map(options, page.data.folds, high, "shapes")), "folds",
+      "<b>Folds.</b> In how many shapes a triangle turns over; most lie inside mouth, lids and nostrils.");
   if (page.data.thesis)
     text += figure(
         page.target.face(page.target.rest(), with_map(options, page.data.thesis_folds, high, "shapes")),

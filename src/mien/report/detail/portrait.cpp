@@ -1,5 +1,7 @@
 #include "mien/report/detail/portrait.h"
 
+#include <algorithm>
+
 #include "mien/report/detail/face_box.h"
 #include "mien/report/detail/poses.h"
 
@@ -7,9 +9,26 @@ namespace mien::detail {
 namespace {
 
 /// Of the landmarks' box: forehead and sides of the face.
-constexpr double around = 0.16;
+constexpr double around = 0.13;
 /// Where an exaggerated shape may take a landmark before it is cut off.
-constexpr double most_around = 0.45;
+constexpr double most_around = 0.4;
+/// Landmarks this many times as far from the middle as the median one are the crown's or the neck's, not the face's.
+constexpr double outlying = 1.8;
+
+/// The landmarks of the face proper.
+std::vector<LandmarkPoint> inner_landmarks(const std::vector<LandmarkPoint>& landmarks) {
+  Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+  for (const LandmarkPoint& landmark : landmarks)
+    middle += landmark.position / static_cast<double>(landmarks.size());
+  std::vector<double> distances;
+  for (const LandmarkPoint& landmark : landmarks) distances.push_back((landmark.position - middle).norm());
+  std::vector<double> sorted = distances;
+  std::sort(sorted.begin(), sorted.end());
+  std::vector<LandmarkPoint> inner;
+  for (std::size_t i = 0; i < landmarks.size(); ++i)
+    if (distances[i] <= outlying * sorted[sorted.size() / 2]) inner.push_back(landmarks[i]);
+  return inner;
+}
 
 PointsD places(const Character& character, const std::vector<Points>& posed,
                const std::vector<LandmarkPoint>& landmarks) {
@@ -29,14 +48,16 @@ Points corners_of_face(const Character& character, const std::vector<Points>& re
     return PointsD(places(character, posed, landmarks) * facing.transpose());
   };
   const PointsD neutral = seen(rest);
-  const Box limit = grown_box(neutral, most_around);
+  const Box limit = grown_box(neutral, most_around), tight = grown_box(neutral, 0);
   Box box = grown_box(neutral, around);
-  const double room = 0.4 * around * grown_box(neutral, 0).diagonal();
+  const double room = 0.4 * around * tight.diagonal();
   for (std::size_t s = 0; s < character.shapes.size(); ++s) {
     const Box reached = grown_box(seen(in_shape(character, s)), 0);
     box.low = box.low.cwiseMin((reached.low.array() - room).matrix()).cwiseMax(limit.low);
     box.high = box.high.cwiseMax((reached.high.array() + room).matrix()).cwiseMin(limit.high);
   }
+  // The picture's plane goes through the middle of the face: its depth takes no room.
+  box.low.z() = box.high.z() = tight.centre().z();
   Points corners(8, 3);
   for (int c = 0; c < 8; ++c) {
     const Eigen::Vector3d corner(c & 1 ? box.high.x() : box.low.x(), c & 2 ? box.high.y() : box.low.y(),
@@ -59,7 +80,7 @@ FrameOptions frame_of(const RenderOptions& options, View view, const Eigen::Matr
 Portrait::Portrait(const Character& character, const std::vector<LandmarkPoint>& landmarks,
                    const Eigen::Matrix3d& facing)
     : character_(character), facing_(facing), rest_(at_rest(character)), renderer_(character) {
-  face_corners_ = corners_of_face(character, rest_, landmarks, facing);
+  face_corners_ = corners_of_face(character, rest_, inner_landmarks(landmarks), facing);
 }
 
 Picture Portrait::head(const Renderer& renderer, const std::vector<Points>& posed, View view,
