@@ -106,31 +106,32 @@ std::string file_name(const std::string& path) {
   return std::filesystem::path(path).filename().string();
 }
 
-void write_report(const Report& report, const std::filesystem::path& folder) {
+void make_folder(const std::filesystem::path& folder) {
   std::error_code failure;
   std::filesystem::create_directories(folder, failure);
   if (failure)
     throw io_error("", "the report's folder cannot be made: " + failure.message()).in_file(folder.string());
-  write_file_atomically(folder / "report.html", report.html);
-  write_file_atomically(folder / "report.json", report.json);
 }
 
 void run(Request& request, const Common& common) {
   read_exaggeration(request.exaggerate, request.options);
   const Character source = load_with_landmarks(request.source, request.source_landmarks);
   const Character target = load_with_landmarks(request.target, request.target_landmarks);
+  const std::filesystem::path folder = request.report;
+  if (!folder.empty()) make_folder(folder);
   request.options.progress = progress_bar(common);
   const TransferResult result = transfer(source, target, request.options);
   std::optional<Report> report;
-  if (!request.report.empty())
+  if (!folder.empty())
     report = make_report({source, target, result, request.options, file_name(request.source),
                           file_name(request.target), file_name(request.output), request.options.progress});
   save(result.character, request.output, {request.compress});
-  if (report) write_report(*report, request.report);
   std::string text = as_text(result, request.output);
   nlohmann::json json = as_json(result.report, request.output);
   if (report) {
-    json["report"] = (std::filesystem::path(request.report) / "report.html").string();
+    write_file_atomically(folder / "report.html", report->html);
+    write_file_atomically(folder / "report.json", report->json);
+    json["report"] = (folder / "report.html").string();
     text += fmt::format("report: {}\n", json["report"].get<std::string>());
   }
   print_result(common, text, json);

@@ -16,7 +16,7 @@ struct ReportInput {
   TransferOptions options;       ///< as given to `transfer`; its progress is not called
   std::string source_name = "source", target_name = "target",
               output_name = "output";  ///< shown, usually file names
-  Progress progress;
+  Progress progress = {};
 };
 
 struct Report {
