@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cstring>
 #include <set>
 
@@ -37,8 +38,9 @@ class SceneWriter {
   void write_scenes(const Json& carried);
   Json node_json(const Node& node, bool animated) const;
   int add_root(Json node);
-  int root_of(int node) const;
+  std::vector<int> roots() const;
   bool is_bare(int node) const;
+  bool is_above_all(int node, const std::vector<int>& joints) const;
 
   const Character& character_;
   std::vector<int> parents_;
@@ -69,9 +71,17 @@ int SceneWriter::add_root(Json node) {
   return static_cast<int>(nodes.size()) - 1;
 }
 
-int SceneWriter::root_of(int node) const {
-  while (parents_[node] >= 0) node = parents_[node];
-  return node;
+/// Each node's root; every chain of parents is walked once.
+std::vector<int> SceneWriter::roots() const {
+  std::vector<int> root(parents_.size(), -1), walked;
+  for (int n = 0; n < static_cast<int>(parents_.size()); ++n) {
+    walked.clear();
+    int at = n;
+    for (; root[at] < 0 && parents_[at] >= 0; at = parents_[at]) walked.push_back(at);
+    if (root[at] < 0) root[at] = at;
+    for (const int below : walked) root[below] = root[at];
+  }
+  return root;
 }
 
 /// Whether nothing but its mesh depends on a node's place in the tree.
@@ -131,12 +141,30 @@ void SceneWriter::place_parts() {
 
 void SceneWriter::join_skin_roots() {
   for (const Skin& skin : character_.skins) {
-    std::set<int> roots;
-    for (const int joint : skin.joints) roots.insert(root_of(joint));
-    if (roots.size() < 2) continue;
+    const std::vector<int> root_of = roots();
+    std::set<int> trees;
+    for (const int joint : skin.joints) trees.insert(root_of[joint]);
+    if (trees.size() < 2) continue;
     const int above = add_root({{"name", skin.name.empty() ? "skeleton" : skin.name + ".skeleton"}});
-    for (const int root : roots) parents_[root] = above;
+    for (const int root : trees) parents_[root] = above;
   }
+}
+
+/// Whether every joint is the node itself or below it.
+bool SceneWriter::is_above_all(int node, const std::vector<int>& joints) const {
+  enum State : char { unknown, below, beside };
+  std::vector<State> state(parents_.size(), unknown);
+  state[node] = below;
+  std::vector<int> walked;
+  for (const int joint : joints) {
+    walked.clear();
+    int at = joint;
+    for (; state[at] == unknown && parents_[at] >= 0; at = parents_[at]) walked.push_back(at);
+    if (state[at] == unknown) state[at] = beside;
+    for (const int n : walked) state[n] = state[at];
+    if (state[joint] != below) return false;
+  }
+  return true;
 }
 
 void SceneWriter::write_skins() {
@@ -144,12 +172,7 @@ void SceneWriter::write_skins() {
     Json json = detail::carried_json(skin.carried, fmt::format("skin {}: carried", skin.name));
     if (!skin.name.empty()) json["name"] = skin.name;
     json["joints"] = skin.joints;
-    const auto is_above = [&](int joint) {
-      while (joint >= 0 && joint != skin.skeleton) joint = parents_[joint];
-      return joint == skin.skeleton;
-    };
-    if (skin.skeleton >= 0 && std::all_of(skin.joints.begin(), skin.joints.end(), is_above))
-      json["skeleton"] = skin.skeleton;
+    if (skin.skeleton >= 0 && is_above_all(skin.skeleton, skin.joints)) json["skeleton"] = skin.skeleton;
     skins.push_back(std::move(json));
   }
 }
@@ -186,15 +209,26 @@ void SceneWriter::write_scenes(const Json& carried) {
     if (one["nodes"].empty()) one.erase("nodes");
 }
 
+/// The base colour that carried material JSON says; white where it says none.
+Eigen::Vector4f carried_color(const Json& material) {
+  Eigen::Vector4f color = Eigen::Vector4f::Ones();
+  const auto pbr = material.find("pbrMetallicRoughness");
+  if (pbr == material.end() || !pbr->is_object() || !pbr->contains("baseColorFactor")) return color;
+  const Json& factor = (*pbr)["baseColorFactor"];
+  for (std::size_t k = 0; factor.is_array() && k < 4 && k < factor.size(); ++k)
+    if (factor[k].is_number()) color[k] = factor[k].get<float>();
+  return color;
+}
+
 Json write_materials(const Appearance& appearance) {
   Json materials = Json::array();
   for (const Material& material : appearance.materials) {
     Json json = detail::carried_json(material.carried, fmt::format("material {}: carried", material.name));
     if (material.carried.empty())
       json["pbrMetallicRoughness"] = {{"metallicFactor", 0.0}, {"roughnessFactor", 0.8}};
-    const std::vector<float> color(material.base_color.data(), material.base_color.data() + 4);
-    if (material.base_color != Eigen::Vector4f::Ones())
-      json["pbrMetallicRoughness"]["baseColorFactor"] = color;
+    if (carried_color(json) != material.base_color)
+      json["pbrMetallicRoughness"]["baseColorFactor"] =
+          std::vector<float>(material.base_color.data(), material.base_color.data() + 4);
     if (!material.name.empty()) json["name"] = material.name;
     materials.push_back(std::move(json));
   }
@@ -289,6 +323,14 @@ Json character_json(const Character& character, GltfBuilder& builder) {
   return root;
 }
 
+/// .gltf in small or large letters.
+bool is_text_form(const std::filesystem::path& path) {
+  std::string extension = path.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return extension == ".gltf";
+}
+
 void append_word(std::vector<std::uint8_t>& bytes, std::size_t value) {
   for (int shift = 0; shift < 32; shift += 8) bytes.push_back(static_cast<std::uint8_t>(value >> shift));
 }
@@ -361,7 +403,7 @@ void write_gltf(const Character& character, const std::filesystem::path& path, c
     if (builder.compressed_any())
       root["buffers"].push_back({{"byteLength", builder.fallback_size()},
                                  {"extensions", {{"EXT_meshopt_compression", {{"fallback", true}}}}}});
-    if (path.extension() == ".gltf") {
+    if (is_text_form(path)) {
       std::filesystem::path beside = path;
       beside.replace_extension(".bin");
       if (!buffer.empty()) {

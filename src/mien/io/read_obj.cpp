@@ -147,13 +147,17 @@ void ObjReader::read_vertex() {
 
 /// Numbers from 1, or from -1 back; what lies ahead in the file is checked at its end.
 int ObjReader::read_index(std::size_t count, const char* kind, int& furthest, int& furthest_line) {
+  constexpr long long limit = 2'000'000'000;
+  const bool negative = at_ < end_ && *at_ == '-';
+  if (at_ < end_ && (*at_ == '+' || *at_ == '-')) ++at_;
+  const char* first = at_;
   long long number = 0;
-  if (at_ < end_ && *at_ == '+') ++at_;
-  const auto [after, code] = std::from_chars(at_, end_, number);
-  if (code != std::errc() && code != std::errc::result_out_of_range)
+  for (; at_ < end_ && *at_ >= '0' && *at_ <= '9'; ++at_)
+    number = std::min(number * 10 + (*at_ - '0'), limit + 1);
+  if (at_ == first)
     throw wrong(fmt::format("has a face corner without a {} number", kind), "give v, v/vt, v//vn or v/vt/vn");
-  const bool huge = code != std::errc() || number > 2'000'000'000 || number < -2'000'000'000;
-  at_ = after;
+  const bool huge = number > limit;
+  if (negative) number = -number;
   const long long index = number > 0 ? number - 1 : number + static_cast<long long>(count);
   if (huge || number == 0 || index < 0)
     throw wrong(fmt::format("names {} {}", kind, huge ? "far out of range" : std::to_string(number)),

@@ -4,6 +4,9 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <string>
+#include <tuple>
 
 #include "mien/core/error.h"
 #include "mien/io/detail/gltf_write.h"
@@ -154,18 +157,18 @@ class ClipWriter {
   GltfBuilder& builder_;
   std::vector<bool> written_parts_;
   Json samplers_ = Json::array(), channels_ = Json::array();
+  std::map<std::tuple<int, int, std::string>, std::size_t> sampler_numbers_;
 };
 
 void ClipWriter::add(int node, const char* path, const Channel& keys) {
-  Json sampler = {
-      {"input", builder_.add_floats(keys.times, 1, true)},
-      {"output",
-       builder_.add_floats(keys.values, keys.property == Channel::Property::shape_weight ? 1 : keys.width())},
-      {"interpolation", name_of(keys.interpolation)}};
-  const auto known = std::find(samplers_.begin(), samplers_.end(), sampler);
-  const auto index = known - samplers_.begin();
-  if (known == samplers_.end()) samplers_.push_back(std::move(sampler));
-  channels_.push_back({{"sampler", index}, {"target", {{"node", node}, {"path", path}}}});
+  const int width = keys.property == Channel::Property::shape_weight ? 1 : keys.width();
+  const int input = builder_.add_floats(keys.times, 1, true);
+  const int output = builder_.add_floats(keys.values, width);
+  const std::string interpolation = name_of(keys.interpolation);
+  const auto [known, is_new] =
+      sampler_numbers_.emplace(std::tuple(input, output, interpolation), samplers_.size());
+  if (is_new) samplers_.push_back({{"input", input}, {"output", output}, {"interpolation", interpolation}});
+  channels_.push_back({{"sampler", known->second}, {"target", {{"node", node}, {"path", path}}}});
 }
 
 bool ClipWriter::drives(const Channel& channel, int part) const {
