@@ -87,7 +87,7 @@ void add_jaw(Shapes& shapes, const HeadMesh& head, const FaceRegions& regions, c
     shapes.list.back().lower_teeth = shapes.list.back().tongue = motion;
   };
   Motion forward, left, right;
-  forward.move = {0, -0.1, 0.75};
+  forward.move = {0, 0.04, 0.75};
   left.centre = right.centre = jaw_opening(0).centre;
   left.axis = right.axis = Vector3d::UnitY();
   left.degrees = 5;
@@ -105,7 +105,7 @@ void add_lips(Shapes& shapes, const HeadMesh& head, const HeadForm& form, const 
   const MouthForm& m = form.mouth;
   const Vector3d corner(m.width, m.corner, m.corner_front), middle(0, m.line, m.front - 0.4);
   shapes.add("mouthFunnel", lips_gathered(head, form, regions, 0.3, 0.5, 0.6));
-  shapes.add("mouthPucker", lips_gathered(head, form, regions, 0.42, 0.0, 0.75));
+  shapes.add("mouthPucker", lips_gathered(head, form, regions, 0.5, 0.02, 0.85));
   const Field aside = pull({{middle, {4.4, 3.2, 4}, {0.95, 0.06, -0.1}}});
   shapes.add("mouthLeft", aside);
   shapes.add("mouthRight", mirrored(head, aside));

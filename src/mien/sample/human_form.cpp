@@ -56,7 +56,8 @@ static HeadForm human_form() {
   form.sculpt = human_sculpt();
   form.mouth.upper_border = -6.1;
   form.mouth.lower_border = -7.86;
-  form.mouth.corner = -6.95;
+  form.mouth.line = -7.0;
+  form.mouth.corner = -6.97;
   form.mouth.corner_front = 9.3;
   form.grid.rows = {
       {0, -17.0, -2.4, -4, 0, 4},    // base of the neck
@@ -81,15 +82,18 @@ CharacterForm human_character() {
   CharacterForm form;
   form.name = "human";
   form.head = human_form();
-  form.upper_teeth.edge = -7.12;
-  form.upper_teeth.front = 9.25;
+  form.upper_teeth.edge = -7.22;
+  form.upper_teeth.height = 1.1;
+  form.upper_teeth.front = 9.4;
   form.upper_teeth.width = 2.15;
   form.lower_teeth.edge = -7.0;
-  form.lower_teeth.front = 8.9;
+  form.lower_teeth.front = 8.95;
   form.lower_teeth.width = 2.0;
   form.lower_teeth.height = -0.85;
   form.brows.line = {{1.0, 1.75, 9}, {2.1, 2.25, 9}, {3.3, 2.45, 8.5}, {4.3, 2.25, 8}, {5.1, 1.6, 7}};
-  form.lashes = 0.45;
+  form.brows.height = 0.6;
+  form.brows.thickness = 0.13;
+  form.lashes = 0.4;
   form.landmarks.jaw = {{0, -11.6, 9.2},  {1.5, -11.4, 8.6}, {2.9, -10.7, 7.0},
                         {4.1, -9.6, 5.3}, {5.1, -8.2, 3.6},  {5.9, -6.4, 2.2},
                         {6.4, -4.4, 1.5}, {6.8, -2.2, 1.2},  {7.0, -0.2, 1.2}};

@@ -114,7 +114,7 @@ Mesh make_teeth(const TeethForm& form) {
     // The arch: half an oval, points spread evenly enough by the sine.
     const double angle = along * 0.5 * kPi * 0.98;
     const Vector3d at(form.width * std::sin(angle), form.edge,
-                      form.front - form.depth * (1 - std::cos(angle)));
+                      form.front - form.depth * (1 - std::pow(std::cos(angle), 0.7)));
     const Vector3d out_of_arch =
         Vector3d(std::sin(angle) / form.width, 0, std::cos(angle) / form.depth).normalized();
     const double within =

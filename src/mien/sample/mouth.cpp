@@ -113,6 +113,12 @@ void add_mouth(HalfHead& half, const HeadForm& form) {
       ring[a].z() -= back;
     }
   };
+  // Where one lip hangs over the other, the line lies behind both.
+  const Loop& inmost = half.mouth.back();
+  for (int a = 0; a <= turn; ++a) {
+    const double shallow = std::min(half.points[inmost[a]].z(), half.points[inmost[last - a]].z());
+    line[a].z() = std::min(line[a].z(), shallow - 0.12 * (1 - double(a) / turn));
+  }
   line_ring(0.0, mouth.gap);
   half.lip_contact = static_cast<int>(half.mouth.size());
   push(HalfHead::Hold::fixed);

@@ -58,7 +58,7 @@ Field lips_gathered(const HeadMesh& head, const HeadForm& form, const FaceRegion
   const Vector3d centre(0, mouth.line, mouth.front - 0.8);
   for (std::size_t v = 0; v < field.size(); ++v) {
     const Vector3d& p = head.points[v];
-    const double around = soft(p, centre, {4.6, 3.6, 3.8});
+    const double around = soft(p, centre, {5.6, 4.0, 4.6});
     const double w = std::max(around, 0.0) * (0.45 + 0.55 * regions.lips[v]);
     if (w <= 0) continue;
     const double across = std::min(1.0, std::abs(p.x()) / mouth.width);
