@@ -79,8 +79,8 @@ HeadForm cartoon_head() {
   form.ear.stand = 0.8;
   form.ear.rim = 0.4;
   form.grid.rows = {
-      {0, -14.0, -1.6, 0, 0, 0},    // base of the neck
-      {4, -9.2, -1.0, -4, 4, 8},    // under the jaw
+      {0, -12.0, -1.4, 0, 0, 0},    // base of the neck
+      {3, -9.2, -1.0, -4, 4, 8},    // under the jaw
       {3, -5.0, 0.0, -28, -12, 4},  // bottom of the chin
       {3, -4.5, 0.0, -17, -4, 6},   // below the mouth
       {6, -3.0, 0.0, -8, 0, 6},     // above the mouth
@@ -90,10 +90,10 @@ HeadForm cartoon_head() {
       {5, 4.0, -0.5, 34, 38, 38},   // hairline
   };
   form.grid.columns = {{0, 0}, {6, 8}, {10, 50}, {4, 90}, {4, 122}, {6, 180}};
-  form.grid.eye = {6, 16, 22, 32};
-  form.grid.mouth = {0, 12, 10, 16};
-  form.grid.nostril = {2, 4, 16, 18};
-  form.grid.ear = {20, 24, 19, 29};
+  form.grid.eye = {6, 16, 21, 31};
+  form.grid.mouth = {0, 12, 9, 15};
+  form.grid.nostril = {2, 4, 15, 17};
+  form.grid.ear = {20, 24, 18, 28};
   form.grid.crown_width = 8;
   form.grid.eye_rings = 5;
   form.grid.mouth_rings = 4;

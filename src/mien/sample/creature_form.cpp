@@ -37,12 +37,10 @@ Sculpt creature_sculpt() {
       capsule({1.5, -4.55, 10.3}, 0.4, {3.7, -4.75, 7.6}, 0.25, 0.8).both(),
       capsule({0, -5.55, 10.5}, 0.5, {1.5, -5.5, 10.1}, 0.48, 0.15).both(),
       capsule({1.5, -5.5, 10.1}, 0.48, {3.6, -5.05, 7.6}, 0.25, 0.2).both(),
-      // A crest of five knobs over the skull.
-      ellipsoid({0, 7.0, 3.4}, {0.55, 0.9, 1.0}, 1.6),
-      ellipsoid({0, 8.0, 1.0}, {0.65, 1.1, 1.1}, 1.6),
-      ellipsoid({0, 8.2, -1.8}, {0.7, 1.2, 1.2}, 1.6),
-      ellipsoid({0, 7.6, -4.6}, {0.65, 1.1, 1.1}, 1.6),
-      ellipsoid({0, 6.2, -7.2}, {0.55, 1.0, 1.0}, 1.6),
+      // A low keel over the skull, and two bumps where horns might grow.
+      capsule({0, 6.4, 4.0}, 0.8, {0, 7.3, -2.0}, 0.9, 2.5),
+      capsule({0, 7.3, -2.0}, 0.9, {0, 5.6, -7.4}, 0.8, 2.5),
+      capsule({3.4, 5.6, 3.4}, 1.15, {4.7, 8.2, 2.6}, 0.45, 1.2).both(),
       // Warts along the brow's end.
       ellipsoid({5.9, 3.6, 4.4}, {0.7, 0.7, 0.7}, 0.8).both(),
       ellipsoid({6.2, 4.2, 2.2}, {0.6, 0.6, 0.6}, 0.8).both(),
@@ -91,8 +89,8 @@ HeadForm creature_head() {
   form.ear.stand = 0.6;
   form.ear.rim = 0.35;
   form.grid.rows = {
-      {0, -14.5, -4.2, 0, 0, 4},    // base of the neck
-      {4, -9.6, -3.2, -6, 10, 22},  // under the jaw
+      {0, -12.5, -3.8, 0, 0, 4},    // base of the neck
+      {3, -9.6, -3.2, -6, 10, 22},  // under the jaw
       {4, -5.0, 0.0, -24, 0, 16},   // bottom of the chin
       {4, -4.6, 0.0, -15, -2, 14},  // below the mouth
       {8, -3.6, 0.0, -2, 2, 12},    // above the mouth
@@ -102,10 +100,10 @@ HeadForm creature_head() {
       {7, 2.4, -1.0, 30, 36, 34},   // top of the forehead
   };
   form.grid.columns = {{0, 0}, {7, 11}, {9, 40}, {6, 88}, {5, 120}, {7, 180}};
-  form.grid.eye = {7, 16, 29, 37};
-  form.grid.mouth = {0, 13, 12, 20};
-  form.grid.nostril = {2, 5, 20, 22};
-  form.grid.ear = {22, 27, 26, 36};
+  form.grid.eye = {7, 16, 28, 36};
+  form.grid.mouth = {0, 13, 11, 19};
+  form.grid.nostril = {2, 5, 19, 21};
+  form.grid.ear = {22, 27, 25, 35};
   form.grid.crown_width = 8;
   return form;
 }

@@ -110,9 +110,9 @@ void add_lips(Shapes& shapes, const HeadMesh& head, const HeadForm& form, const 
   shapes.add("mouthLeft", aside);
   shapes.add("mouthRight", mirrored(head, aside));
   shapes.add_pair("mouthSmile",
-                  pull({{corner, {3.0, 2.3, 3.6}, {0.68, 0.62, -0.55}},
+                  pull({{corner, {3.0, 2.4, 3.6}, {0.75, 0.72, -0.6}},
                         {{1.0, m.line + 0.4, m.front - 0.4}, {2.2, 1.6, 3}, {0.05, 0.14, -0.06}, On::upper},
-                        {{3.9, -4.0, 8.0}, {2.4, 2.2, 2.6}, {0.22, 0.32, 0.32}}}) +
+                        {{3.9, -4.0, 8.0}, {2.4, 2.2, 2.6}, {0.24, 0.36, 0.38}}}) +
                       lid_field(head, form, regions, 0, 3));
   shapes.add_pair("mouthFrown", pull({{corner, {2.2, 2.0, 3}, {0.08, -0.75, -0.1}}}));
   shapes.add_pair("mouthDimple", pull({{corner, {1.9, 1.7, 2.4}, {0.4, 0.06, -0.55}}}));

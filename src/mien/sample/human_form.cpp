@@ -40,10 +40,10 @@ static Sculpt human_sculpt() {
       // Lips; where they meet the blend is tight and leaves the line between them.
       capsule({0.3, -6.48, 10.40}, 0.43, {1.0, -6.52, 10.28}, 0.42, 0.8).both(),
       capsule({1.0, -6.52, 10.28}, 0.42, {1.8, -6.68, 9.80}, 0.33, 0.8).both(),
-      capsule({1.8, -6.68, 9.80}, 0.33, {2.6, -6.88, 9.15}, 0.2, 0.8).both(),
+      capsule({1.8, -6.68, 9.80}, 0.33, {2.6, -6.78, 9.15}, 0.2, 0.8).both(),
       capsule({0, -7.40, 10.22}, 0.5, {0.8, -7.39, 10.12}, 0.48, 0.12).both(),
       capsule({0.8, -7.39, 10.12}, 0.48, {1.7, -7.26, 9.70}, 0.34, 0.12).both(),
-      capsule({1.7, -7.26, 9.70}, 0.34, {2.55, -7.04, 9.15}, 0.18, 0.12).both(),
+      capsule({1.7, -7.26, 9.70}, 0.34, {2.55, -6.96, 9.15}, 0.18, 0.12).both(),
       ellipsoid({0, -8.0, 9.0}, {2.2, 0.7, 1.2}, 0.8),
       // Philtrum and the furrow above the chin.
       capsule({0, -5.2, 10.9}, 0.2, {0, -5.9, 11.1}, 0.25, 0.5).cut(),
@@ -54,14 +54,15 @@ static Sculpt human_sculpt() {
 static HeadForm human_form() {
   HeadForm form;
   form.sculpt = human_sculpt();
+  form.eye.upper = 28;
   form.mouth.upper_border = -6.1;
   form.mouth.lower_border = -7.86;
   form.mouth.line = -7.0;
-  form.mouth.corner = -6.97;
+  form.mouth.corner = -6.88;
   form.mouth.corner_front = 9.3;
   form.grid.rows = {
-      {0, -17.0, -2.4, -4, 0, 4},    // base of the neck
-      {5, -11.5, -1.8, -8, 12, 22},  // under the jaw
+      {0, -15.6, -2.2, -4, 0, 4},    // base of the neck
+      {4, -11.5, -1.8, -8, 12, 22},  // under the jaw
       {4, -8.0, 0.0, -22, 16, 20},   // bottom of the chin
       {4, -6.0, 0.0, -17, 8, 18},    // below the mouth
       {8, -4.0, 0.0, -6, 4, 14},     // above the mouth
@@ -71,10 +72,10 @@ static HeadForm human_form() {
       {8, 3.6, -0.7, 32, 38, 38},    // hairline
   };
   form.grid.columns = {{0, 0}, {8, 10}, {10, 39}, {5, 88}, {5, 122}, {8, 180}};
-  form.grid.eye = {8, 18, 33, 41};
-  form.grid.mouth = {0, 12, 13, 21};
-  form.grid.nostril = {3, 6, 22, 26};
-  form.grid.ear = {23, 28, 29, 39};
+  form.grid.eye = {8, 18, 32, 40};
+  form.grid.mouth = {0, 12, 12, 20};
+  form.grid.nostril = {3, 6, 21, 25};
+  form.grid.ear = {23, 28, 28, 38};
   return form;
 }
 

@@ -27,8 +27,8 @@ std::vector<JointForm> joint_forms(const HeadForm& form) {
   const MouthForm& m = form.mouth;
   const Vector3d corner(m.width, m.corner, m.corner_front);
   return {
-      {"root", "", {0, -17, -2.4}},
-      {"neck", "root", {0, -14, -2.2}},
+      {"root", "", {0, -15.6, -2.2}},
+      {"neck", "root", {0, -13.5, -2.1}},
       {"head", "neck", {0, -6, -1.4}},
       {"jaw", "head", jaw_opening(0).centre},
       {"eyeLeft_joint", "head", form.eye.centre},
