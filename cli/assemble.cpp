@@ -109,8 +109,10 @@ void add_assemble(CLI::App& app, Common& common) {
   command->add_option(
       "--neutral", arguments->neutral,
       "The neutral; default: the first FILE, or in a folder the file with \"neutral\" in its name");
-  command->add_option("--exclude", arguments->exclude,
-                      "Leave out files of these names (* and ? match), repeatable");
+  command
+      ->add_option("--exclude", arguments->exclude,
+                   "Leave out files of these names (* and ? match), repeatable")
+      ->allow_extra_args(false);
   command
       ->add_option("--threshold", arguments->options.threshold,
                    "Ignore displacements below this part of the face's box diagonal")
