@@ -137,7 +137,8 @@ CharacterForm cartoon_character() {
       plain_material("iris", 0.30f, 0.52f, 0.28f),   plain_material("pupil", 0.02f, 0.02f, 0.02f),
       plain_material("teeth", 0.97f, 0.96f, 0.92f),  plain_material("gum", 0.80f, 0.42f, 0.42f),
       plain_material("tongue", 0.85f, 0.42f, 0.42f), plain_material("hair", 0.30f, 0.15f, 0.07f),
-      plain_material("mouth", 0.45f, 0.15f, 0.15f),  plain_material("lips", 0.86f, 0.50f, 0.44f)};
+      plain_material("mouth", 0.45f, 0.15f, 0.15f),  plain_material("lips", 0.86f, 0.50f, 0.44f),
+      plain_material("limbus", 0.16f, 0.30f, 0.14f)};
   return form;
 }
 

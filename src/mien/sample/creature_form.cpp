@@ -142,7 +142,8 @@ CharacterForm creature_character() {
       plain_material("iris", 0.80f, 0.42f, 0.06f),   plain_material("pupil", 0.02f, 0.02f, 0.02f),
       plain_material("teeth", 0.90f, 0.86f, 0.68f),  plain_material("gum", 0.45f, 0.25f, 0.27f),
       plain_material("tongue", 0.55f, 0.28f, 0.33f), plain_material("hair", 0.10f, 0.10f, 0.08f),
-      plain_material("mouth", 0.25f, 0.11f, 0.11f),  plain_material("lips", 0.33f, 0.40f, 0.24f)};
+      plain_material("mouth", 0.25f, 0.11f, 0.11f),  plain_material("lips", 0.33f, 0.40f, 0.24f),
+      plain_material("limbus", 0.45f, 0.18f, 0.02f)};
   return form;
 }
 

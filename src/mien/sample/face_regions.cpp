@@ -82,7 +82,7 @@ FaceRegions make_regions(const HeadMesh& head, const HeadForm& form) {
   const auto jaw_side = [&](int v, double on_lips) -> std::optional<double> {
     const Vector3d& p = head.points[v];
     if (regions.mouth[v].ring >= border) return on_lips;
-    if (p.y() > mouth.line + 1.9 || p.y() < mouth.lower_border - 5.6 || p.z() < 0.5) return 0;
+    if (p.y() > mouth.line + 1.9 || p.y() < mouth.lower_border - 7.2 || p.z() < 0.5) return 0;
     if (p.y() < mouth.lower_border - 0.8 && p.z() > 6) return 1;
     return std::nullopt;
   };

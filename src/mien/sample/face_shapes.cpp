@@ -95,7 +95,7 @@ void add_jaw(Shapes& shapes, const HeadMesh& head, const FaceRegions& regions, c
   add("jawForward", forward);
   add("jawLeft", left);
   add("jawRight", right);
-  add("jawOpen", jaw_opening(21));
+  add("jawOpen", jaw_opening(20));
   shapes.list.back().skin = shapes.list.back().skin + lift;
   jaw_open = shapes.list.back().skin;
 }

@@ -106,7 +106,8 @@ CharacterForm human_character() {
       plain_material("iris", 0.24f, 0.38f, 0.46f),   plain_material("pupil", 0.02f, 0.02f, 0.02f),
       plain_material("teeth", 0.93f, 0.90f, 0.83f),  plain_material("gum", 0.68f, 0.36f, 0.36f),
       plain_material("tongue", 0.72f, 0.38f, 0.38f), plain_material("hair", 0.22f, 0.15f, 0.11f),
-      plain_material("mouth", 0.45f, 0.18f, 0.17f),  plain_material("lips", 0.74f, 0.47f, 0.43f)};
+      plain_material("mouth", 0.45f, 0.18f, 0.17f),  plain_material("lips", 0.74f, 0.47f, 0.43f),
+      plain_material("limbus", 0.13f, 0.22f, 0.29f)};
   return form;
 }
 

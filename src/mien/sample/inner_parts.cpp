@@ -65,7 +65,7 @@ Mesh make_eyeball(const Vector3d& centre, double radius, double iris_degrees) {
   const int around = 28;
   const double pupil = 0.42 * iris_degrees;
   // Angles from the axis of sight: the pupil's edge twice over is the iris' inner edge.
-  std::vector<double> angles = {0.5 * pupil, pupil, 0.7 * iris_degrees, iris_degrees, 1.15 * iris_degrees};
+  std::vector<double> angles = {0.5 * pupil, pupil, 0.86 * iris_degrees, iris_degrees, 1.2 * iris_degrees};
   for (int k = 1; k <= 8; ++k) angles.push_back(angles[4] + k * (172 - angles[4]) / 8);
   MeshWriter out;
   const int front = out.add(centre + Vector3d(0, 0, radius), {0.5, 0.5});
@@ -91,6 +91,7 @@ Mesh make_eyeball(const Vector3d& centre, double radius, double iris_degrees) {
   for (int i = 0; i < around; ++i) out.face({first.back() + i, back, first.back() + (i + 1) % around});
   out.begin_group("iris", iris_material);
   band(1);
+  out.begin_group("limbus", limbus_material);
   band(2);
   out.begin_group("pupil", pupil_material);
   for (int i = 0; i < around; ++i) out.face({front, first[0] + i, first[0] + (i + 1) % around});

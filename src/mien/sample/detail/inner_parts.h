@@ -17,10 +17,11 @@ enum MaterialId {
   tongue_material,
   hair_material,
   mouth_material,
-  lip_material
+  lip_material,
+  limbus_material
 };
 
-/// One eyeball around its centre, looking along +Z; groups: white, iris, pupil.
+/// One eyeball around its centre, looking along +Z; groups: white, iris, its dark rim, pupil.
 Mesh make_eyeball(const Vector3d& centre, double radius, double iris_degrees);
 
 struct TeethForm {
