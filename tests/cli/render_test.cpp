@@ -41,7 +41,7 @@ class Render : public ::testing::Test {
 };
 
 TEST_F(Render, InvalidInputs) {
-  refuse("--shape smirk", "face.glb: shape smirk: does not exist; one of the 2 shapes, perhaps smile");
+  refuse("--shape smirk", "face.glb: shape smirk: does not exist; name one of the 2 shapes, perhaps smile");
   refuse("--shape smile=wide", "--shape smile=wide: has no number after =");
   refuse("--shape smile=nan", "--shape smile=nan: has no number after =");
   refuse("--view behind", "view behind: does not exist; front, left, right or three-quarter");
@@ -51,12 +51,12 @@ TEST_F(Render, InvalidInputs) {
   refuse("--size 0,48", "0 x 48 pixels");
   refuse("--size 30000,48", "30000 x 48 pixels");
   folder.write("weights.json", "{\"weights\": {\"smile\": \"much\"}}");
-  refuse("--weights " + folder / "weights.json", "weights.json: weight of smile: is not a number");
+  refuse("--weights " + folder / "weights.json", "weights.json: weights.smile: is a string; give a number");
   folder.write("weights.json", "{\"smile\": 1}");
-  refuse("--weights " + folder / "weights.json", "has no object \"weights\"");
+  refuse("--weights " + folder / "weights.json", "has no \"weights\"");
   folder.write("weights.json", "{\"weights\":");
-  refuse("--weights " + folder / "weights.json", "is not JSON");
-  refuse("--weights " + folder / "none.json", "none.json: cannot be read");
+  refuse("--weights " + folder / "weights.json", "is not valid JSON");
+  refuse("--weights " + folder / "none.json", "none.json: file: cannot be opened");
   expect_failure(run_mien(folder, "render " + face + " -o " + folder / "face.jpg"), "ends in .png");
 }
 

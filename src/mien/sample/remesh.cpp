@@ -43,10 +43,10 @@ class Remesher {
     };
     std::vector<Edge> edges;
     for (const Triangle& t : triangles_)
-      for (int c = 0; c < 3; ++c) {
+      for (int c = 0; c < 3 && t[0] >= 0; ++c) {
         const int a = t[c], b = t[(c + 1) % 3];
         const double ratio = (points_[a] - points_[b]).norm() / std::min(wanted_[a], wanted_[b]);
-        if (t[0] >= 0 && a < b && ratio < 0.8) edges.push_back({ratio, a, b});
+        if (a < b && ratio < 0.8) edges.push_back({ratio, a, b});
       }
     std::sort(edges.begin(), edges.end());
     std::vector<char> touched(points_.size(), 0);
