@@ -20,12 +20,17 @@ Similarity Similarity::inverse() const {
 }
 
 Similarity fit_similarity(const PointsD& from, const PointsD& to) {
+  return fit_similarity(from, to, Eigen::VectorXd::Ones(from.rows()));
+}
+
+Similarity fit_similarity(const PointsD& from, const PointsD& to, const Eigen::VectorXd& weights) {
   if (from.rows() != to.rows())
     throw invalid_input("similarity", "point sets of different sizes", "as many points on both sides");
   if (from.rows() < 3) throw invalid_input("similarity", "fewer than 3 point pairs", "3 or more");
-  const Eigen::RowVector3d from_mean = from.colwise().mean(), to_mean = to.colwise().mean();
+  const Eigen::VectorXd share = weights / weights.sum();
+  const Eigen::RowVector3d from_mean = share.transpose() * from, to_mean = share.transpose() * to;
   const PointsD a = from.rowwise() - from_mean, b = to.rowwise() - to_mean;
-  const Eigen::Matrix3d covariance = b.transpose() * a;
+  const Eigen::Matrix3d covariance = b.transpose() * share.asDiagonal() * a;
   Eigen::JacobiSVD<Eigen::Matrix3d> svd(covariance, Eigen::ComputeFullU | Eigen::ComputeFullV);
   const Eigen::Vector3d s = svd.singularValues();
   if (!(s[1] > 1e-12 * s[0]))
@@ -34,7 +39,7 @@ Similarity fit_similarity(const PointsD& from, const PointsD& to) {
   if ((svd.matrixU() * svd.matrixV().transpose()).determinant() < 0) sign[2] = -1;
   Similarity result;
   result.rotation = svd.matrixU() * sign.asDiagonal() * svd.matrixV().transpose();
-  result.scale = s.dot(sign) / a.squaredNorm();
+  result.scale = s.dot(sign) / share.dot(a.rowwise().squaredNorm());
   result.translation = to_mean.transpose() - result.scale * (result.rotation * from_mean.transpose());
   return result;
 }

@@ -23,6 +23,9 @@ struct Similarity {
 ///   throws  invalid_input: fewer than 3 points, all on one line, sizes that differ
 Similarity fit_similarity(const PointsD& from, const PointsD& to);
 
+/// The same with a weight (positive) a pair.
+Similarity fit_similarity(const PointsD& from, const PointsD& to, const Eigen::VectorXd& weights);
+
 /// The rotation closest to `m` in the Frobenius norm (the orthogonal factor of its polar decomposition).
 Eigen::Matrix3d closest_rotation(const Eigen::Matrix3d& m);
 

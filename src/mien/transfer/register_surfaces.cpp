@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "mien/core/error.h"
 #include "mien/geometry/laplacian.h"
@@ -23,6 +24,8 @@ struct Stage {
 /// Weight of one openness level in one direction, while the stiffness is at least `curves_until`: lid and lip lines say
 /// where features are, not where each vertex of a margin belongs.
 constexpr double curve_weight = 0.033, curves_until = 0.06;
+/// A border as long as a neck's, in face sizes; eyes' and mouths' are shorter.
+constexpr double least_border = 1.0;
 
 /// From the whole face's proportions down to features of a few edges.
 constexpr std::array<Stage, 11> schedule{{{3, .5, .35},
@@ -36,6 +39,10 @@ constexpr std::array<Stage, 11> schedule{{{3, .5, .35},
                                           {2e-4, 0, .12},
                                           {5e-5, 0, .12},
                                           {1e-5, 0, .12}}};
+
+/// How far a match may be, in face sizes: the start may be far off where there are no landmarks (a cranium), later only
+/// what lies close is the same place.
+double reach_at(std::size_t stage) { return std::max(0.01, 0.1 * std::pow(0.8, static_cast<double>(stage))); }
 
 Eigen::VectorXd normalised_areas(const Surface& surface) {
   const Eigen::VectorXd areas = vertex_areas(surface.positions, surface.triangles);
@@ -76,8 +83,9 @@ Registration register_surfaces(const Surface& source, const Surface& target, con
 
   std::vector<detail::CurvePiece> source_curves, target_curves;
   if (options.feature_curves) {
-    source_curves = detail::feature_curves(source, result.source_openness);
-    target_curves = detail::feature_curves(target, result.target_openness);
+    source_curves = detail::feature_curves(source, result.source_openness,
+                                           least_border * result.unit / result.similarity.scale);
+    target_curves = detail::feature_curves(target, result.target_openness, least_border * result.unit);
   }
   const Surface fixed_surface{fixed_points, target.triangles};
 
@@ -94,7 +102,7 @@ Registration register_surfaces(const Surface& source, const Surface& target, con
     report_progress(options.progress, "registering", static_cast<double>(s) / schedule.size());
     const detail::MatchSurface moving(start + u, source.triangles, result.source_openness, solver.masses());
     std::vector<detail::Wish> wishes =
-        detail::match_both_ways(moving, fixed, {.tangential = schedule[s].tangential});
+        detail::match_both_ways(moving, fixed, {.least_reach = reach_at(s), .tangential = schedule[s].tangential});
     add_landmark_wishes(landmark_hits, source.triangles, goals,
                         options.landmark_trust * schedule[s].landmarks / 68, wishes);
     if (schedule[s].stiffness >= curves_until) {

@@ -8,6 +8,7 @@
 
 #include "mien/core/error.h"
 #include "mien/core/parallel.h"
+#include "mien/geometry/moving_similarity.h"
 #include "mien/geometry/thin_plate_spline.h"
 #include "mien/transfer/carry_skeleton.h"
 #include "mien/transfer/carry_skin_weights.h"
@@ -31,6 +32,10 @@ std::size_t at(int index) {
 constexpr double least_delta = 1e-5;
 /// Radius over which areas are compared for the local scale, relative to the face's size.
 constexpr double scale_radius = 0.2;
+
+/// Joints follow this many points of the guide, each with a blur, relative to the face's size.
+constexpr int joint_samples = 800;
+constexpr double joint_softness = 0.03;
 
 /// One transfer on its way: each step reads what the steps before left and adds its own.
 class Run {
@@ -228,11 +233,14 @@ void Run::place_joints() {
       return std::cbrt(std::abs(landmark_spline_->jacobian(x).determinant()));
     };
   } else {
-    map.position = [&](const Eigen::Vector3d& x) { return (*dense_)(similarity(x)); };
-    map.rotation = [&](const Eigen::Vector3d&) { return similarity.rotation; };
-    map.scale = [&](const Eigen::Vector3d& x) {
-      const double volume = std::abs(dense_->jacobian(similarity(x)).determinant());
-      return similarity.scale * std::clamp(std::cbrt(volume), 0.5, 2.0);
+    const auto samples = farthest_points(maps_.aligned, joint_samples);
+    const auto local = std::make_shared<MovingSimilarity>(maps_.aligned(samples, Eigen::all),
+                                                          registration_.guide(samples, Eigen::all),
+                                                          joint_softness * registration_.unit);
+    map.position = [local, &similarity](const Eigen::Vector3d& x) { return (*local)(similarity(x)); };
+    map.rotation = [&similarity](const Eigen::Vector3d&) { return similarity.rotation; };
+    map.scale = [local, &similarity](const Eigen::Vector3d& x) {
+      return similarity.scale * local->at(similarity(x)).scale;
     };
   }
   result_ = detail::bare_target(target_, target_pool_, !source_.skins.empty());

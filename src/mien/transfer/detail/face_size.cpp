@@ -1,14 +1,14 @@
 #include "mien/transfer/detail/face_size.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace mien::detail {
 
 double face_size(const PointsD& landmarks, const PointsD& skin) {
-  const auto diagonal = [](const PointsD& p) {
-    return (p.colwise().maxCoeff() - p.colwise().minCoeff()).norm();
-  };
-  return std::clamp(diagonal(landmarks), 0.35 * diagonal(skin), diagonal(skin));
+  const double skin_diagonal = (skin.colwise().maxCoeff() - skin.colwise().minCoeff()).norm();
+  const double spread = std::sqrt((landmarks.rowwise() - landmarks.colwise().mean()).rowwise().squaredNorm().mean());
+  return std::clamp(3.6 * spread, 0.35 * skin_diagonal, skin_diagonal);
 }
 
 }  // namespace mien::detail

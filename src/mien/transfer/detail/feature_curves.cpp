@@ -3,7 +3,9 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numeric>
+#include <utility>
 
 #include "mien/geometry/laplacian.h"
 
@@ -11,6 +13,7 @@ namespace mien::detail {
 namespace {
 
 constexpr std::array<double, 3> levels{0.3, 0.5, 0.7};
+constexpr int border_level = static_cast<int>(levels.size());
 constexpr std::size_t cavities = 3;
 /// What a difference of normals counts as, in face sizes.
 constexpr double normal_length = 0.03;
@@ -70,6 +73,36 @@ bool cross(const Eigen::Vector3d& open, double level, CurvePiece& piece) {
     end[static_cast<std::size_t>(next)] = t;
   }
   return ends == 2;
+}
+
+/// The edges with one triangle, of connected borders that are long enough.
+std::vector<CurvePiece> long_borders(const Surface& surface, double least_border) {
+  const std::vector<char> boundary =
+      boundary_vertices(static_cast<std::size_t>(surface.positions.rows()), surface.triangles);
+  std::map<std::pair<int, int>, int> uses;
+  for (Eigen::Index t = 0; t < surface.triangles.rows(); ++t)
+    for (int k = 0; k < 3; ++k) {
+      const int a = surface.triangles(t, k), b = surface.triangles(t, (k + 1) % 3);
+      if (boundary[static_cast<std::size_t>(a)] && boundary[static_cast<std::size_t>(b)])
+        ++uses[{std::min(a, b), std::max(a, b)}];
+    }
+  std::vector<CurvePiece> pieces;
+  Triangles edges(static_cast<Eigen::Index>(uses.size()), 3);
+  Eigen::Index count = 0;
+  for (const auto& [edge, triangles] : uses) {
+    if (triangles != 1) continue;
+    edges.row(count++) << edge.first, edge.second, edge.second;
+    pieces.push_back({{edge.first, edge.second, edge.second}, {1, 0, 0}, {0, 1, 0}, border_level});
+  }
+  const std::vector<int> label = connected_components(boundary.size(), edges.topRows(count));
+  std::map<int, double> length;
+  const auto edge_length = [&](const CurvePiece& piece) {
+    return (surface.positions.row(piece.vertices[0]) - surface.positions.row(piece.vertices[1])).norm();
+  };
+  const auto loop = [&](const CurvePiece& piece) { return label[static_cast<std::size_t>(piece.vertices[0])]; };
+  for (const CurvePiece& piece : pieces) length[loop(piece)] += edge_length(piece);
+  std::erase_if(pieces, [&](const CurvePiece& piece) { return length[loop(piece)] < least_border; });
+  return pieces;
 }
 
 /// A piece on a posed surface.
@@ -145,8 +178,9 @@ Wish wish_for(const CurvePiece& moving, const Eigen::Vector3d& goal, const Eigen
 
 }  // namespace
 
-std::vector<CurvePiece> feature_curves(const Surface& surface, const Eigen::VectorXd& openness) {
-  std::vector<CurvePiece> pieces;
+std::vector<CurvePiece> feature_curves(const Surface& surface, const Eigen::VectorXd& openness,
+                                       double least_border) {
+  std::vector<CurvePiece> pieces = long_borders(surface, least_border);
   const std::vector<int> seeds = cavity_seeds(surface, openness);
   for (std::size_t l = 0; l < levels.size(); ++l) {
     const std::vector<int> label = regions_below(surface, openness, levels[l]);
@@ -178,7 +212,7 @@ std::vector<Wish> match_curves(const std::vector<CurvePiece>& moving, const Surf
       pose(moving, moving_surface, vertex_normals(moving_surface.positions, moving_surface.triangles));
   const auto posed_fixed =
       pose(fixed, fixed_surface, vertex_normals(fixed_surface.positions, fixed_surface.triangles));
-  for (int level = 0; level < static_cast<int>(levels.size()); ++level) {
+  for (int level = 0; level <= border_level; ++level) {
     double moving_length = 0, fixed_length = 0;
     for (std::size_t i = 0; i < moving.size(); ++i)
       if (moving[i].level == level) moving_length += posed_moving[i].length;

@@ -1,0 +1,17 @@
+#include "mien/geometry/moving_similarity.h"
+
+#include <utility>
+
+namespace mien {
+
+MovingSimilarity::MovingSimilarity(PointsD from, PointsD to, double softness)
+    : from_(std::move(from)), to_(std::move(to)), softness_(softness) {
+  fit_similarity(from_, to_);  // refuses what cannot be fitted, once
+}
+
+Similarity MovingSimilarity::at(const Eigen::Vector3d& x) const {
+  const Eigen::ArrayXd squared = (from_.rowwise() - x.transpose()).rowwise().squaredNorm();
+  return fit_similarity(from_, to_, (squared + softness_ * softness_).square().inverse().matrix());
+}
+
+}  // namespace mien
