@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "mien/core/error.h"
 #include "mien/geometry/laplacian.h"
@@ -11,6 +12,7 @@
 #include "mien/transfer/detail/face_size.h"
 #include "mien/transfer/detail/feature_curves.h"
 #include "mien/transfer/detail/matching.h"
+#include "mien/transfer/detail/polynomial_fit.h"
 
 namespace mien {
 namespace {
@@ -26,6 +28,8 @@ struct Stage {
 constexpr double curve_weight = 0.033, curves_until = 0.06;
 /// A border as long as a neck's, in face sizes; eyes' and mouths' are shorter.
 constexpr double least_border = 1.0;
+/// While the surface is stiff this many vertices of either side say as much as all.
+constexpr int coarse_vertices = 4000;
 
 /// From the whole face's proportions down to features of a few edges.
 constexpr std::array<Stage, 11> schedule{{{3, .5, .35},
@@ -64,6 +68,64 @@ void add_landmark_wishes(const std::vector<SurfaceQuery::Hit>& at, const Triangl
   }
 }
 
+/// What all stages share: the two surfaces, their curves and the landmarks.
+struct Fitting {
+  const Surface& source;
+  const Surface fixed_surface;
+  const detail::MatchSurface& fixed;
+  const PointsD& goals;
+  const Registration& result;
+  const RegistrationOptions& options;
+  std::vector<detail::CurvePiece> source_curves, target_curves;
+  std::vector<SurfaceQuery::Hit> landmarks;
+  Eigen::VectorXd masses;
+
+  void find_features(const PointsD& source_landmarks) {
+    masses = normalised_areas(source);
+    const SurfaceQuery query(source.positions, source.triangles);
+    for (Eigen::Index i = 0; i < source_landmarks.rows(); ++i)
+      landmarks.push_back(query.closest(source_landmarks.row(i).transpose()));
+    if (!options.feature_curves) return;
+    source_curves = detail::feature_curves(source, result.source_openness,
+                                           least_border * result.unit / result.similarity.scale);
+    target_curves = detail::feature_curves(fixed_surface, result.target_openness, least_border);
+  }
+
+  /// All that pulls at the source when it lies at `positions`.
+  std::vector<detail::Wish> wishes(const PointsD& positions, const Stage& stage, double reach) const {
+    const detail::MatchSurface moving(positions, source.triangles, result.source_openness, masses);
+    const bool coarse = stage.stiffness >= curves_until;
+    detail::MatchOptions match;
+    match.least_reach = reach;
+    match.tangential = stage.tangential;
+    match.most_vertices = coarse ? coarse_vertices : std::numeric_limits<int>::max();
+    std::vector<detail::Wish> all = detail::match_both_ways(moving, fixed, match);
+    add_landmark_wishes(landmarks, source.triangles, goals, options.landmark_trust * stage.landmarks / 68, all);
+    if (coarse) {
+      const auto pulls =
+          detail::match_curves(source_curves, {positions, source.triangles}, target_curves, fixed_surface, curve_weight);
+      all.insert(all.end(), pulls.begin(), pulls.end());
+    }
+    return all;
+  }
+
+  /// Moves what lies far from all landmarks by quadratic maps of the whole skin.
+  void fit_whole(PointsD& positions) const {
+    constexpr int rounds = 6;
+    constexpr double ridge = 1e-4, reach = 0.3, near = 0.15, far = 0.6;
+    const Stage whole{schedule[0].stiffness, 1, 0.1};
+    for (int round = 0; round < rounds; ++round) {
+      PointsD shift = detail::fit_polynomial(positions, wishes(positions, whole, reach), ridge);
+      for (Eigen::Index v = 0; v < shift.rows(); ++v) {
+        const double distance = std::sqrt((goals.rowwise() - positions.row(v)).rowwise().squaredNorm().minCoeff());
+        const double t = std::clamp((distance - near) / (far - near), 0.0, 1.0);
+        shift.row(v) *= t * t * (3 - 2 * t);
+      }
+      positions += shift;
+    }
+  }
+};
+
 }  // namespace
 
 Registration register_surfaces(const Surface& source, const Surface& target, const PointsD& source_landmarks,
@@ -81,36 +143,17 @@ Registration register_surfaces(const Surface& source, const Surface& target, con
   const detail::MatchSurface fixed(fixed_points, target.triangles, result.target_openness,
                                    normalised_areas(target));
 
-  std::vector<detail::CurvePiece> source_curves, target_curves;
-  if (options.feature_curves) {
-    source_curves = detail::feature_curves(source, result.source_openness,
-                                           least_border * result.unit / result.similarity.scale);
-    target_curves = detail::feature_curves(target, result.target_openness, least_border * result.unit);
-  }
-  const Surface fixed_surface{fixed_points, target.triangles};
-
+  Fitting fitting{source, {fixed_points, target.triangles}, fixed, goals, result, options, {}, {}, {}};
+  fitting.find_features(source_landmarks);
   const ThinPlateSpline spline(source_landmarks, goals, {options.smoothing, -1});
-  const PointsD start = spline(source.positions);
+  PointsD start = spline(source.positions);
+  fitting.fit_whole(start);
   const detail::DisplacementSolver solver(start, source.triangles);
-  const SurfaceQuery source_query(source.positions, source.triangles);
-  std::vector<SurfaceQuery::Hit> landmark_hits;
-  for (Eigen::Index i = 0; i < source_landmarks.rows(); ++i)
-    landmark_hits.push_back(source_query.closest(source_landmarks.row(i).transpose()));
-
   PointsD u = PointsD::Zero(start.rows(), 3);
   for (std::size_t s = 0; s < schedule.size(); ++s) {
     report_progress(options.progress, "registering", static_cast<double>(s) / schedule.size());
-    const detail::MatchSurface moving(start + u, source.triangles, result.source_openness, solver.masses());
-    std::vector<detail::Wish> wishes =
-        detail::match_both_ways(moving, fixed, {.least_reach = reach_at(s), .tangential = schedule[s].tangential});
-    add_landmark_wishes(landmark_hits, source.triangles, goals,
-                        options.landmark_trust * schedule[s].landmarks / 68, wishes);
-    if (schedule[s].stiffness >= curves_until) {
-      const auto pulls = detail::match_curves(source_curves, {start + u, source.triangles}, target_curves,
-                                              fixed_surface, curve_weight);
-      wishes.insert(wishes.end(), pulls.begin(), pulls.end());
-    }
-    u = solver.solve(schedule[s].stiffness, wishes, u);
+    const Stage& stage = schedule[s];
+    u = solver.solve(stage.stiffness, fitting.wishes(start + u, stage, reach_at(s)), u);
   }
   result.guide = ((start + u) * result.unit).rowwise() + centre;
   return result;

@@ -31,7 +31,7 @@ std::size_t at(int index) {
 /// Smaller displacements are sculpting noise, relative to the face's size.
 constexpr double least_delta = 1e-5;
 /// Radius over which areas are compared for the local scale, relative to the face's size.
-constexpr double scale_radius = 0.2;
+constexpr double scale_radius = 0.22;
 
 /// Joints follow this many points of the guide, each with a blur, relative to the face's size.
 constexpr int joint_samples = 800;

@@ -26,21 +26,32 @@ bool on_border(const MatchSurface& surface, const SurfaceQuery::Hit& hit) {
   return true;
 }
 
-/// For each vertex of `from` its match on `to`; triangle -1 where the gates reject.
+/// The vertices that ask: all, or every k-th.
+struct Asking {
+  Eigen::Index step, count;
+  Eigen::Index vertex(std::size_t i) const { return static_cast<Eigen::Index>(i) * step; }
+};
+Asking asking(const MatchSurface& surface, int most) {
+  const Eigen::Index all = surface.positions.rows(), step = (all + most - 1) / most;
+  return {step, (all + step - 1) / step};
+}
+
+/// For each asking vertex of `from` its match on `to`; triangle -1 where the gates reject.
 std::vector<SurfaceQuery::Hit> match(const MatchSurface& from, const MatchSurface& to,
                                      const MatchOptions& options) {
-  std::vector<SurfaceQuery::Hit> hits(static_cast<std::size_t>(from.positions.rows()));
+  const Asking ask = asking(from, options.most_vertices);
+  std::vector<SurfaceQuery::Hit> hits(static_cast<std::size_t>(ask.count));
   parallel_for(hits.size(), 64, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t v = begin; v < end; ++v)
-      hits[v] = to.query.closest(from.positions.row(static_cast<Eigen::Index>(v)).transpose());
+    for (std::size_t i = begin; i < end; ++i)
+      hits[i] = to.query.closest(from.positions.row(ask.vertex(i)).transpose());
   });
   std::vector<double> distances(hits.size());
   std::transform(hits.begin(), hits.end(), distances.begin(), [](const auto& hit) { return hit.distance; });
   std::nth_element(distances.begin(), distances.begin() + distances.size() / 2, distances.end());
   const double reach = std::max(options.least_reach, 3 * distances[distances.size() / 2]);
-  for (std::size_t v = 0; v < hits.size(); ++v) {
-    SurfaceQuery::Hit& hit = hits[v];
-    const Eigen::Index row = static_cast<Eigen::Index>(v);
+  for (std::size_t i = 0; i < hits.size(); ++i) {
+    SurfaceQuery::Hit& hit = hits[i];
+    const Eigen::Index row = ask.vertex(i);
     const bool take = hit.distance <= reach && !on_border(to, hit) &&
                       from.normals.row(row).dot(to.triangle_normal(hit.triangle)) > options.least_cosine &&
                       may_match(from.openness[row], interpolate(to.openness, to.triangles, hit));
@@ -81,11 +92,12 @@ std::vector<Wish> match_both_ways(const MatchSurface& moving, const MatchSurface
   std::vector<Wish> wishes;
   wishes.reserve(static_cast<std::size_t>(moving.positions.rows() + fixed.positions.rows()));
   const auto forward = match(moving, fixed, options);
-  for (std::size_t v = 0; v < forward.size(); ++v) {
-    const SurfaceQuery::Hit& hit = forward[v];
+  const Asking forward_ask = asking(moving, options.most_vertices);
+  for (std::size_t i = 0; i < forward.size(); ++i) {
+    const SurfaceQuery::Hit& hit = forward[i];
     if (hit.triangle < 0) continue;
-    const int vertex = static_cast<int>(v);
-    const double mass = moving.masses[vertex];
+    const int vertex = static_cast<int>(forward_ask.vertex(i));
+    const double mass = moving.masses[vertex] * static_cast<double>(forward_ask.step);
     wishes.push_back({{vertex, vertex, vertex},
                       {1, 0, 0},
                       hit.position,
@@ -94,10 +106,12 @@ std::vector<Wish> match_both_ways(const MatchSurface& moving, const MatchSurface
                       options.tangential * mass});
   }
   const auto backward = match(fixed, moving, options);
-  for (std::size_t v = 0; v < backward.size(); ++v) {
-    const SurfaceQuery::Hit& hit = backward[v];
+  const Asking backward_ask = asking(fixed, options.most_vertices);
+  for (std::size_t i = 0; i < backward.size(); ++i) {
+    const SurfaceQuery::Hit& hit = backward[i];
     if (hit.triangle < 0) continue;
-    const Eigen::Index row = static_cast<Eigen::Index>(v);
+    const Eigen::Index row = backward_ask.vertex(i);
+    const double mass = fixed.masses[row] * static_cast<double>(backward_ask.step);
     Wish wish;
     for (int k = 0; k < 3; ++k) {
       wish.vertices[k] = moving.triangles(hit.triangle, k);
@@ -105,8 +119,8 @@ std::vector<Wish> match_both_ways(const MatchSurface& moving, const MatchSurface
     }
     wish.goal = fixed.positions.row(row).transpose();
     wish.axis = fixed.normals.row(row).transpose();
-    wish.along = fixed.masses[row];
-    wish.across = options.tangential * fixed.masses[row];
+    wish.along = mass;
+    wish.across = options.tangential * mass;
     wishes.push_back(wish);
   }
   return wishes;

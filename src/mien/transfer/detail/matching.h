@@ -1,6 +1,7 @@
 #pragma once
 /// Closest points between the moving source and the target, with the gates that keep lips, lids and nostrils apart.
 
+#include <limits>
 #include <vector>
 
 #include "mien/geometry/surface_query.h"
@@ -25,6 +26,7 @@ struct MatchOptions {
   double least_cosine = 0.5;  ///< of the angle between the normals
   double least_reach = 0.01;  ///< a match further than max(this, 3 x median distance) is rejected
   double tangential = 0.35;   ///< tangential share of a plane's pull
+  int most_vertices = std::numeric_limits<int>::max();  ///< of either side that ask, evenly chosen by number
 };
 
 /// Wishes that bring the moving vertices onto the fixed surface and the fixed vertices onto the moving surface, each
