@@ -317,7 +317,9 @@ void ContactModel::close_lids(std::size_t shape, PointsD& moved) const {
     const double qb = -row(moved, pair.b).dot(gap) / gap.squaredNorm();
     const double now = qa + qb;
     if (now < 0.35 * pair.closed || now > 2.5 * pair.closed) continue;
-    rows.push_back({pair.a, pair.b, qa, qb, pair.closed - now});
+    // A lid that stops short is pulled on, one that runs through the other back; between, it is left alone.
+    const double goal = std::clamp(now, pair.closed, std::max(pair.closed, 1.0));
+    rows.push_back({pair.a, pair.b, qa, qb, goal - now});
   }
   if (rows.empty()) return;
   const double weight = 100.0 / static_cast<double>(rows.size());

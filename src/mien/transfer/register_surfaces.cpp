@@ -29,7 +29,7 @@ constexpr double curve_weight = 0.033, curves_until = 0.06;
 /// A border as long as a neck's, in face sizes; eyes' and mouths' are shorter.
 constexpr double least_border = 1.0;
 /// While the surface is stiff this many vertices of either side say as much as all.
-constexpr int coarse_vertices = 4000;
+constexpr int coarse_vertices = 6000;
 
 /// From the whole face's proportions down to features of a few edges.
 constexpr std::array<Stage, 11> schedule{{{3, .5, .35},
@@ -46,7 +46,9 @@ constexpr std::array<Stage, 11> schedule{{{3, .5, .35},
 
 /// How far a match may be, in face sizes: the start may be far off where there are no landmarks (a cranium), later only
 /// what lies close is the same place.
-double reach_at(std::size_t stage) { return std::max(0.01, 0.1 * std::pow(0.8, static_cast<double>(stage))); }
+double reach_at(std::size_t stage) {
+  return std::max(0.01, 0.1 * std::pow(0.8, static_cast<double>(stage)));
+}
 
 Eigen::VectorXd normalised_areas(const Surface& surface) {
   const Eigen::VectorXd areas = vertex_areas(surface.positions, surface.triangles);
@@ -100,10 +102,11 @@ struct Fitting {
     match.tangential = stage.tangential;
     match.most_vertices = coarse ? coarse_vertices : std::numeric_limits<int>::max();
     std::vector<detail::Wish> all = detail::match_both_ways(moving, fixed, match);
-    add_landmark_wishes(landmarks, source.triangles, goals, options.landmark_trust * stage.landmarks / 68, all);
+    add_landmark_wishes(landmarks, source.triangles, goals, options.landmark_trust * stage.landmarks / 68,
+                        all);
     if (coarse) {
-      const auto pulls =
-          detail::match_curves(source_curves, {positions, source.triangles}, target_curves, fixed_surface, curve_weight);
+      const auto pulls = detail::match_curves(source_curves, {positions, source.triangles}, target_curves,
+                                              fixed_surface, curve_weight);
       all.insert(all.end(), pulls.begin(), pulls.end());
     }
     return all;
@@ -117,7 +120,8 @@ struct Fitting {
     for (int round = 0; round < rounds; ++round) {
       PointsD shift = detail::fit_polynomial(positions, wishes(positions, whole, reach), ridge);
       for (Eigen::Index v = 0; v < shift.rows(); ++v) {
-        const double distance = std::sqrt((goals.rowwise() - positions.row(v)).rowwise().squaredNorm().minCoeff());
+        const double distance =
+            std::sqrt((goals.rowwise() - positions.row(v)).rowwise().squaredNorm().minCoeff());
         const double t = std::clamp((distance - near) / (far - near), 0.0, 1.0);
         shift.row(v) *= t * t * (3 - 2 * t);
       }

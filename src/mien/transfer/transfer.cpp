@@ -31,7 +31,7 @@ std::size_t at(int index) {
 /// Smaller displacements are sculpting noise, relative to the face's size.
 constexpr double least_delta = 1e-5;
 /// Radius over which areas are compared for the local scale, relative to the face's size.
-constexpr double scale_radius = 0.22;
+constexpr double scale_radius = 0.2;
 
 /// Joints follow this many points of the guide, each with a blur, relative to the face's size.
 constexpr int joint_samples = 800;
@@ -234,8 +234,11 @@ void Run::place_joints() {
     };
   } else {
     const auto samples = farthest_points(maps_.aligned, joint_samples);
-    const auto local = std::make_shared<MovingSimilarity>(maps_.aligned(samples, Eigen::all),
-                                                          registration_.guide(samples, Eigen::all),
+    const detail::PiecePoints inner = detail::piece_points(piece_input(), plans_);
+    PointsD from(static_cast<Eigen::Index>(samples.size()) + inner.aligned.rows(), 3), to(from.rows(), 3);
+    from << maps_.aligned(samples, Eigen::all), inner.aligned;
+    to << registration_.guide(samples, Eigen::all), inner.target;
+    const auto local = std::make_shared<MovingSimilarity>(std::move(from), std::move(to),
                                                           joint_softness * registration_.unit);
     map.position = [local, &similarity](const Eigen::Vector3d& x) { return (*local)(similarity(x)); };
     map.rotation = [&similarity](const Eigen::Vector3d&) { return similarity.rotation; };

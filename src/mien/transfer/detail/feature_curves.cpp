@@ -99,7 +99,9 @@ std::vector<CurvePiece> long_borders(const Surface& surface, double least_border
   const auto edge_length = [&](const CurvePiece& piece) {
     return (surface.positions.row(piece.vertices[0]) - surface.positions.row(piece.vertices[1])).norm();
   };
-  const auto loop = [&](const CurvePiece& piece) { return label[static_cast<std::size_t>(piece.vertices[0])]; };
+  const auto loop = [&](const CurvePiece& piece) {
+    return label[static_cast<std::size_t>(piece.vertices[0])];
+  };
   for (const CurvePiece& piece : pieces) length[loop(piece)] += edge_length(piece);
   std::erase_if(pieces, [&](const CurvePiece& piece) { return length[loop(piece)] < least_border; });
   return pieces;

@@ -20,7 +20,8 @@ struct CurvePiece {
 /// The level curves of `openness` at 0.3, 0.5 and 0.7 around the three largest connected regions below 0.3: on a head
 /// the mouth and the eyes. Surfaces with open holes in their place have none there. Then, as a level of its own, the
 /// surface's open borders that are longer than `least_border` (a neck's; not the rims of open eyes).
-std::vector<CurvePiece> feature_curves(const Surface& surface, const Eigen::VectorXd& openness, double least_border);
+std::vector<CurvePiece> feature_curves(const Surface& surface, const Eigen::VectorXd& openness,
+                                       double least_border);
 
 /// Wishes that pull the moving surface's curves across onto the fixed surface's and let them slide along, both ways; each
 /// level and direction has the weights' sum `weight`. Matches further than a few medians, or 0.05, are rejected.

@@ -84,7 +84,8 @@ std::vector<char> donor_pieces(const PieceInput& in, PieceKind kind, const std::
 }
 
 /// Where the piece's donors are, or false when nothing of the source lies near.
-bool find_donors(const PieceInput& in, const std::vector<char>& donors, PiecePlan& plan) {
+bool find_donors(const PieceInput& in, const std::vector<char>& donors, const std::vector<PieceKind>& kinds,
+                 PiecePlan& plan) {
   const PoolSurface source = select_pieces(in.source, donors);
   if (source.surface.triangles.rows() == 0) return false;
   PointsD warped = rows(in.warped_source, source.vertices);
@@ -103,6 +104,8 @@ bool find_donors(const PieceInput& in, const std::vector<char>& donors, PiecePla
   if (distance[distance.size() / 2] > 0.15 * in.unit) return false;
   for (const auto& [piece, count] : votes) {
     if (count < 0.05 * static_cast<double>(plan.vertices.size())) continue;
+    plan.same_kind = (plan.donor_vertices.empty() || plan.same_kind) && plan.kind != PieceKind::other &&
+                     kinds[at(piece)] == plan.kind;
     const auto members = vertices_of(in.source, piece);
     plan.donor_vertices.insert(plan.donor_vertices.end(), members.begin(), members.end());
   }
@@ -237,7 +240,7 @@ std::vector<PiecePlan> plan_pieces(const PieceInput& in) {
     plan.vertices = vertices_of(in.target, p);
     plan.growth = in.similarity.scale;
     const auto donors = donor_pieces(in, plan.kind, in.target.piece_name[at(p)], source_kinds);
-    if (plan.kind != PieceKind::lash && find_donors(in, donors, plan)) {
+    if (plan.kind != PieceKind::lash && find_donors(in, donors, source_kinds, plan)) {
       plan.way = PiecePlan::Way::donors;
     } else {
       const SkinFit fit = find_skin(in, skin, plan);
@@ -254,6 +257,32 @@ std::vector<PiecePlan> plan_pieces(const PieceInput& in) {
     plans.push_back(std::move(plan));
   }
   return plans;
+}
+
+PiecePoints piece_points(const PieceInput& in, const std::vector<PiecePlan>& plans) {
+  std::vector<Eigen::RowVector3d> aligned, target;
+  const auto add_box = [](const PointsD& points, std::vector<Eigen::RowVector3d>& list) {
+    const Eigen::RowVector3d low = points.colwise().minCoeff(), high = points.colwise().maxCoeff();
+    const Eigen::RowVector3d middle = (low + high) / 2;
+    list.push_back(middle);
+    for (int axis = 0; axis < 3; ++axis)
+      for (const double side : {low[axis], high[axis]}) {
+        list.push_back(middle);
+        list.back()[axis] = side;
+      }
+  };
+  for (const PiecePlan& plan : plans) {
+    if (plan.way != PiecePlan::Way::donors || !plan.same_kind) continue;
+    add_box(in.similarity(rows(in.source.positions, plan.donor_vertices)), aligned);
+    add_box(rows(in.target.positions, plan.vertices), target);
+  }
+  PiecePoints points{PointsD(static_cast<Eigen::Index>(aligned.size()), 3),
+                     PointsD(static_cast<Eigen::Index>(target.size()), 3)};
+  for (std::size_t i = 0; i < aligned.size(); ++i) {
+    points.aligned.row(static_cast<Eigen::Index>(i)) = aligned[i];
+    points.target.row(static_cast<Eigen::Index>(i)) = target[i];
+  }
+  return points;
 }
 
 PointsD carry_piece(const PieceInput& in, const PiecePlan& plan, const PointsD& source_delta,

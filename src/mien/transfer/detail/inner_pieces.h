@@ -31,7 +31,8 @@ struct PiecePlan {
   /// donors: per vertex a triangle of the source pool; attached and jaw: a triangle of the target skin's surface
   std::vector<int> triangle;
   std::vector<Eigen::Vector3d> barycentric;
-  std::vector<double> fade;         ///< attached: 1 on the skin, falling with distance
+  std::vector<double> fade;  ///< attached: 1 on the skin, falling with distance
+  bool same_kind = false;    ///< donors: they are what the piece is (a tongue for a tongue), by name or form
   std::vector<int> donor_vertices;  ///< donors: pooled source vertices whose motion is looked at as a whole
   double growth = 1;                ///< how lengths grow there, source to target
 };
@@ -49,6 +50,14 @@ struct PieceInput {
 
 /// One plan a target piece that is not skin, in piece order.
 std::vector<PiecePlan> plan_pieces(const PieceInput& input);
+
+/// Points of pieces that are the same thing on both sides, for maps of space to go through: the middles of each piece's
+/// box and of its sides, source (after the similarity) to target. They tell where joints go inside the head, where the
+/// skin says little.
+struct PiecePoints {
+  PointsD aligned, target;
+};
+PiecePoints piece_points(const PieceInput& input, const std::vector<PiecePlan>& plans);
 
 /// The displacement (#vertices of the plan x 3, target model space) of one shape.
 ///   source_delta  pooled source vertices x 3, source model space
