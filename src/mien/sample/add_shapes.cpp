@@ -54,7 +54,7 @@ void add_shapes(BuiltCharacter& built, const CharacterForm& form, const FaceRegi
   Character& character = built.character;
   const Anchors brows = anchors_of(character.parts[brows_part].mesh, built.head, {});
   const Anchors lashes = anchors_of(character.parts[lashes_part].mesh, built.head, built.lash_anchors);
-  for (const FaceShape& face : make_face_shapes(built.head, form.head, regions)) {
+  for (const FaceShape& face : make_face_shapes({built.head, form.head, regions})) {
     Shape shape;
     shape.name = face.name;
     const auto add = [&](int part, const Field& field) {

@@ -15,7 +15,8 @@ namespace {
 /// Displacement of the left eye's loops when each place of the lids' edges rises by `raise(upper, t)`
 /// degrees.
 template <typename Raise>
-Field turn_lids(const HeadMesh& head, const HeadForm& form, const FaceRegions& regions, Raise raise) {
+Field turn_lids(const Face& face, Raise raise) {
+  const auto& [head, form, regions] = face;
   Field field(head.points.size(), Vector3d::Zero());
   const int count = static_cast<int>(head.half.eye[0].size()), turn = count / 2, edge = head.half.lid_edge;
   for (std::size_t v = 0; v < head.points.size(); ++v) {
@@ -38,16 +39,15 @@ Field turn_lids(const HeadMesh& head, const HeadForm& form, const FaceRegions& r
 
 }  // namespace
 
-Field lid_field(const HeadMesh& head, const HeadForm& form, const FaceRegions& regions, double upper,
-                double lower) {
-  return turn_lids(head, form, regions, [&](bool is_upper, double t) {
+Field lid_field(const Face& face, double upper, double lower) {
+  return turn_lids(face, [&](bool is_upper, double t) {
     return (is_upper ? upper : lower) * std::pow(std::sin(std::numbers::pi * t), 0.7);
   });
 }
 
-Field blink_field(const HeadMesh& head, const HeadForm& form, const FaceRegions& regions) {
-  return turn_lids(head, form, regions, [&](bool upper, double t) {
-    return lid_meeting(form.eye, t).y() - lid_edge(form.eye, upper, t).y();
+Field blink_field(const Face& face) {
+  return turn_lids(face, [&](bool upper, double t) {
+    return lid_meeting(face.form.eye, t).y() - lid_edge(face.form.eye, upper, t).y();
   });
 }
 

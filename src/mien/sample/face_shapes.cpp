@@ -18,7 +18,8 @@ struct Pull {
 
 using On = Pull::On;
 
-Field pulled(const HeadMesh& head, const FaceRegions& regions, const std::vector<Pull>& pulls) {
+Field pulled(const Face& face, const std::vector<Pull>& pulls) {
+  const auto& [head, form, regions] = face;
   Field field(head.points.size(), Vector3d::Zero());
   for (std::size_t v = 0; v < field.size(); ++v)
     for (const Pull& pull : pulls) {
@@ -53,21 +54,20 @@ class Shapes {
   const HeadMesh& head_;
 };
 
-void add_eyes(Shapes& shapes, const HeadMesh& head, const HeadForm& form, const FaceRegions& regions) {
-  const auto lids = [&](double upper, double lower) { return lid_field(head, form, regions, upper, lower); };
-  const auto pull = [&](const std::vector<Pull>& pulls) { return pulled(head, regions, pulls); };
+void add_eyes(Shapes& shapes, const Face& face) {
+  const auto lids = [&](double upper, double lower) { return lid_field(face, upper, lower); };
+  const auto pull = [&](const std::vector<Pull>& pulls) { return pulled(face, pulls); };
   const auto gaze = [&](const Vector3d& axis, double degrees) {
     for (const bool left : {true, false}) {
       FaceShape& shape = shapes.list[shapes.list.size() - (left ? 2 : 1)];
       Motion& motion = left ? shape.eye_left : shape.eye_right;
-      motion.centre = form.eye.centre;
+      motion.centre = face.form.eye.centre;
       if (!left) motion.centre.x() *= -1;
       motion.axis = axis;
       motion.degrees = left || axis.x() != 0 ? degrees : -degrees;
     }
   };
-  shapes.add_pair("eyeBlink",
-                  blink_field(head, form, regions) + pull({{{3.2, 1.5, 8.2}, {2.2, 1.0, 2}, {0, -0.12, 0}}}));
+  shapes.add_pair("eyeBlink", blink_field(face) + pull({{{3.2, 1.5, 8.2}, {2.2, 1.0, 2}, {0, -0.12, 0}}}));
   shapes.add_pair("eyeLookDown", lids(-15, -5));
   gaze(Vector3d::UnitX(), 24);
   shapes.add_pair("eyeLookIn", lids(-1, 1));
@@ -80,8 +80,9 @@ void add_eyes(Shapes& shapes, const HeadMesh& head, const HeadForm& form, const 
   shapes.add_pair("eyeWide", lids(11, -4) + pull({{{3.2, 1.6, 8.2}, {2.4, 1.1, 2}, {0, 0.15, 0}}}));
 }
 
-void add_jaw(Shapes& shapes, const HeadMesh& head, const FaceRegions& regions, const Field& lift,
-             Field& jaw_open) {
+/// Adds the jaw's shapes and returns the open jaw's displacement.
+Field add_jaw(Shapes& shapes, const Face& face) {
+  const auto& [head, form, regions] = face;
   const auto add = [&](const std::string& name, const Motion& motion) {
     shapes.add(name, carried(head, regions.jaw, motion));
     shapes.list.back().lower_teeth = shapes.list.back().tongue = motion;
@@ -96,37 +97,41 @@ void add_jaw(Shapes& shapes, const HeadMesh& head, const FaceRegions& regions, c
   add("jawLeft", left);
   add("jawRight", right);
   add("jawOpen", jaw_opening(20));
-  shapes.list.back().skin = shapes.list.back().skin + lift;
-  jaw_open = shapes.list.back().skin;
+  // The upper lip makes way for the teeth.
+  const MouthForm& m = form.mouth;
+  shapes.list.back().skin =
+      shapes.list.back().skin +
+      pulled(face, {{{0, m.line + 0.4, m.front - 0.3}, {2.6, 2.0, 3}, {0, 0.22, 0}, On::upper}});
+  return shapes.list.back().skin;
 }
 
-void add_lips(Shapes& shapes, const HeadMesh& head, const HeadForm& form, const FaceRegions& regions) {
-  const auto pull = [&](const std::vector<Pull>& pulls) { return pulled(head, regions, pulls); };
-  const MouthForm& m = form.mouth;
+void add_lips(Shapes& shapes, const Face& face) {
+  const auto pull = [&](const std::vector<Pull>& pulls) { return pulled(face, pulls); };
+  const MouthForm& m = face.form.mouth;
   const Vector3d corner(m.width, m.corner, m.corner_front), middle(0, m.line, m.front - 0.4);
-  shapes.add("mouthFunnel", lips_gathered(head, form, regions, 0.3, 0.5, 0.6));
-  shapes.add("mouthPucker", lips_gathered(head, form, regions, 0.5, 0.02, 0.85));
+  shapes.add("mouthFunnel", lips_gathered(face, {0.3, 0.5, 0.6}));
+  shapes.add("mouthPucker", lips_gathered(face, {0.5, 0.02, 0.85}));
   const Field aside = pull({{middle, {4.4, 3.2, 4}, {0.95, 0.06, -0.1}}});
   shapes.add("mouthLeft", aside);
-  shapes.add("mouthRight", mirrored(head, aside));
+  shapes.add("mouthRight", mirrored(face.head, aside));
   shapes.add_pair("mouthSmile",
                   pull({{corner, {3.0, 2.4, 3.6}, {0.75, 0.72, -0.6}},
                         {{1.0, m.line + 0.4, m.front - 0.4}, {2.2, 1.6, 3}, {0.05, 0.14, -0.06}, On::upper},
                         {{3.9, -4.0, 8.0}, {2.4, 2.2, 2.6}, {0.24, 0.36, 0.38}}}) +
-                      lid_field(head, form, regions, 0, 3));
+                      lid_field(face, 0, 3));
   shapes.add_pair("mouthFrown", pull({{corner, {2.2, 2.0, 3}, {0.08, -0.75, -0.1}}}));
   shapes.add_pair("mouthDimple", pull({{corner, {1.9, 1.7, 2.4}, {0.4, 0.06, -0.55}}}));
   shapes.add_pair("mouthStretch", pull({{corner, {2.8, 2.3, 3.4}, {0.72, -0.32, -0.5}},
                                         {{3.4, -10, 6}, {2.6, 2.6, 4}, {0.15, -0.2, 0}}}));
-  shapes.add("mouthRollLower", lip_roll(head, form, regions, false));
-  shapes.add("mouthRollUpper", lip_roll(head, form, regions, true));
+  shapes.add("mouthRollLower", lip_roll(face, false));
+  shapes.add("mouthRollUpper", lip_roll(face, true));
   shapes.add("mouthShrugLower",
              pull({{{0, m.line - 1.6, m.front - 0.4}, {3.2, 3.0, 3.4}, {0, 0.5, 0.18}, On::lower},
                    {{0, m.line, m.front - 0.3}, {2.8, 1.8, 3}, {0, 0.34, 0.12}, On::upper}}));
   shapes.add("mouthShrugUpper",
              pull({{{0, m.line + 0.4, m.front}, {2.9, 2.0, 3}, {0, 0.34, 0.22}, On::upper},
                    {{0, m.line, m.front - 0.3}, {2.5, 1.3, 3}, {0, 0.22, 0.1}, On::lower}}));
-  shapes.add_pair("mouthPress", lip_press(head, regions));
+  shapes.add_pair("mouthPress", lip_press(face));
   shapes.add_pair("mouthLowerDown",
                   pull({{{1.1, m.line - 0.5, m.front - 0.5}, {2.2, 2.1, 3}, {0.1, -0.75, 0}, On::lower}}));
   shapes.add_pair("mouthUpperUp",
@@ -134,20 +139,19 @@ void add_lips(Shapes& shapes, const HeadMesh& head, const HeadForm& form, const 
                         {{1.6, -4.2, 10}, {1.3, 1.3, 1.6}, {0.06, 0.14, 0}}}));
 }
 
-void add_brows_cheeks_nose(Shapes& shapes, const HeadMesh& head, const HeadForm& form,
-                           const FaceRegions& regions) {
-  const auto pull = [&](const std::vector<Pull>& pulls) { return pulled(head, regions, pulls); };
+void add_brows_cheeks_nose(Shapes& shapes, const Face& face) {
+  const auto pull = [&](const std::vector<Pull>& pulls) { return pulled(face, pulls); };
   shapes.add_pair("browDown", pull({{{1.7, 2.0, 9}, {2.3, 1.7, 2.6}, {-0.18, -0.55, 0.12}},
                                     {{3.8, 2.2, 8}, {2.3, 1.5, 2.6}, {-0.05, -0.36, 0.04}}}) +
-                                  lid_field(head, form, regions, -3, 0));
+                                  lid_field(face, -3, 0));
   const Field inner = pull({{{1.4, 2.4, 9}, {2.1, 2.6, 2.8}, {0.02, 0.72, -0.06}}});
-  shapes.add("browInnerUp", inner + mirrored(head, inner));
-  shapes.add_pair("browOuterUp", pull({{{4.2, 2.4, 7.8}, {2.3, 2.6, 2.8}, {0.04, 0.75, -0.12}}}) +
-                                     lid_field(head, form, regions, 2, 0));
+  shapes.add("browInnerUp", inner + mirrored(face.head, inner));
+  shapes.add_pair("browOuterUp",
+                  pull({{{4.2, 2.4, 7.8}, {2.3, 2.6, 2.8}, {0.04, 0.75, -0.12}}}) + lid_field(face, 2, 0));
   const Field puff = pull({{{3.9, -6.0, 7.6}, {2.7, 3.2, 3.6}, {0.8, 0, 0.5}}});
-  shapes.add("cheekPuff", puff + mirrored(head, puff) + lips_gathered(head, form, regions, 0.06, 0, 0.12));
-  shapes.add_pair("cheekSquint", pull({{{3.7, -2.4, 8}, {2.3, 1.9, 2.6}, {0.08, 0.55, 0.22}}}) +
-                                     lid_field(head, form, regions, 0, 6));
+  shapes.add("cheekPuff", puff + mirrored(face.head, puff) + lips_gathered(face, {0.06, 0, 0.12}));
+  shapes.add_pair("cheekSquint",
+                  pull({{{3.7, -2.4, 8}, {2.3, 1.9, 2.6}, {0.08, 0.55, 0.22}}}) + lid_field(face, 0, 6));
   shapes.add_pair("noseSneer", pull({{{1.3, -3.4, 10}, {1.5, 2.2, 2.2}, {0.05, 0.5, 0.06}, On::upper},
                                      {{1.4, -6.1, 10}, {1.5, 1.3, 2.2}, {0.02, 0.3, 0.03}, On::upper},
                                      {{1.2, 1.6, 9}, {1.3, 1.2, 2}, {-0.04, -0.2, 0.05}}}));
@@ -171,22 +175,16 @@ const char* const kOrder[52] = {
 
 }  // namespace
 
-std::vector<FaceShape> make_face_shapes(const HeadMesh& head, const HeadForm& form,
-                                        const FaceRegions& regions) {
-  Shapes shapes(head);
-  Field jaw_open;
-  add_eyes(shapes, head, form, regions);
-  // The upper lip makes way for the teeth.
-  const MouthForm& m = form.mouth;
-  const Field lift =
-      pulled(head, regions, {{{0, m.line + 0.4, m.front - 0.3}, {2.6, 2.0, 3}, {0, 0.22, 0}, On::upper}});
-  add_jaw(shapes, head, regions, lift, jaw_open);
-  shapes.add("mouthClose", mouth_close(head, regions, jaw_open));
-  add_lips(shapes, head, form, regions);
-  add_brows_cheeks_nose(shapes, head, form, regions);
+std::vector<FaceShape> make_face_shapes(const Face& face) {
+  Shapes shapes(face.head);
+  add_eyes(shapes, face);
+  const Field jaw_open = add_jaw(shapes, face);
+  shapes.add("mouthClose", mouth_close(face, jaw_open));
+  add_lips(shapes, face);
+  add_brows_cheeks_nose(shapes, face);
   // The tongue comes out between parted lips.
   const Motion parted = jaw_opening(7);
-  shapes.add("tongueOut", carried(head, regions.jaw, parted));
+  shapes.add("tongueOut", carried(face.head, face.regions.jaw, parted));
   shapes.list.back().lower_teeth = parted;
   shapes.list.back().tongue_out = true;
 

@@ -30,7 +30,8 @@ Field carried(const HeadMesh& head, const Weights& weights, const Motion& motion
   return field;
 }
 
-Field mouth_close(const HeadMesh& head, const FaceRegions& regions, const Field& jaw_open) {
+Field mouth_close(const Face& face, const Field& jaw_open) {
+  const auto& [head, form, regions] = face;
   // The lips meet a third of the way down; below and above them the correction fades out.
   Field field(head.points.size(), Vector3d::Zero());
   const int last = static_cast<int>(head.half.mouth[0].size()) - 1;
@@ -51,8 +52,9 @@ Field mouth_close(const HeadMesh& head, const FaceRegions& regions, const Field&
   return field;
 }
 
-Field lips_gathered(const HeadMesh& head, const HeadForm& form, const FaceRegions& regions, double narrow,
-                    double open, double forward) {
+Field lips_gathered(const Face& face, const Gathering& gathering) {
+  const auto& [head, form, regions] = face;
+  const auto& [narrow, open, forward] = gathering;
   const MouthForm& mouth = form.mouth;
   Field field(head.points.size(), Vector3d::Zero());
   const Vector3d centre(0, mouth.line, mouth.front - 0.8);
@@ -71,7 +73,8 @@ Field lips_gathered(const HeadMesh& head, const HeadForm& form, const FaceRegion
   return field;
 }
 
-Field lip_roll(const HeadMesh& head, const HeadForm& form, const FaceRegions& regions, bool upper) {
+Field lip_roll(const Face& face, bool upper) {
+  const auto& [head, form, regions] = face;
   Field field(head.points.size(), Vector3d::Zero());
   const int border = head.half.lip_border, contact = head.half.lip_contact;
   const int last = static_cast<int>(head.half.mouth[0].size()) - 1;
@@ -92,7 +95,8 @@ Field lip_roll(const HeadMesh& head, const HeadForm& form, const FaceRegions& re
   return field;
 }
 
-Field lip_press(const HeadMesh& head, const FaceRegions& regions) {
+Field lip_press(const Face& face) {
+  const auto& [head, form, regions] = face;
   Field field(head.points.size(), Vector3d::Zero());
   const int border = head.half.lip_border, contact = head.half.lip_contact;
   const int last = static_cast<int>(head.half.mouth[0].size()) - 1;

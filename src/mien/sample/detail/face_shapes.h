@@ -26,26 +26,39 @@ struct FaceShape {
   bool tongue_out = false;
 };
 
-/// All 52, in ARKit's order.
-std::vector<FaceShape> make_face_shapes(const HeadMesh& head, const HeadForm& form,
-                                        const FaceRegions& regions);
+/// What shapes are made from.
+struct Face {
+  const HeadMesh& head;
+  const HeadForm& form;
+  const FaceRegions& regions;
+};
 
-/// Where the lids' and the eye's shapes are made.
-Field lid_field(const HeadMesh& head, const HeadForm& form, const FaceRegions& regions, double upper,
-                double lower);
-Field blink_field(const HeadMesh& head, const HeadForm& form, const FaceRegions& regions);
+/// All 52, in ARKit's order.
+std::vector<FaceShape> make_face_shapes(const Face& face);
 
 /// Skin displacement under a motion, in proportion to `weights`.
 Field carried(const HeadMesh& head, const Weights& weights, const Motion& motion);
 
-/// The jaw's hinge axis and how far it opens.
+/// The jaw opened by so many degrees about its hinge.
 Motion jaw_opening(double degrees);
 
-// Shapes of the lips that need more than pulls.
-Field mouth_close(const HeadMesh& head, const FaceRegions& regions, const Field& jaw_open);
-Field lips_gathered(const HeadMesh& head, const HeadForm& form, const FaceRegions& regions, double narrow,
-                    double open, double forward);
-Field lip_roll(const HeadMesh& head, const HeadForm& form, const FaceRegions& regions, bool upper);
-Field lip_press(const HeadMesh& head, const FaceRegions& regions);
+/// The left eye's lids raised by so many degrees in their middle.
+Field lid_field(const Face& face, double upper, double lower);
+/// The left eye shut.
+Field blink_field(const Face& face);
+
+/// The correction that brings the lips together while the jaw is open.
+Field mouth_close(const Face& face, const Field& jaw_open);
+
+struct Gathering {
+  double narrow = 0;   ///< share of the width that the mouth loses
+  double open = 0;     ///< how far each lip leaves the line between them
+  double forward = 0;  ///< how far the lips come out
+};
+Field lips_gathered(const Face& face, const Gathering& gathering);
+/// One lip turned in over the teeth.
+Field lip_roll(const Face& face, bool upper);
+/// The left half of the lips pressed together.
+Field lip_press(const Face& face);
 
 }  // namespace mien::sample
