@@ -21,6 +21,14 @@ struct ShapeRow {
   int thesis_flips = 0, thesis_torn = 0;  ///< triangles; edges
 };
 
+/// Worth a look: the target folds or stretches more than the source does.
+inline bool folds_more(const ShapeRow& shape) {
+  return shape.flips > 20 + 2 * shape.source_flips;
+}
+inline bool stretches_more(const ShapeRow& shape) {
+  return shape.stretch > 8 && shape.stretch > 3 * shape.source_stretch;
+}
+
 struct JointRow {
   std::string name;
   int source_joint = 0, target_joint = 0;     ///< nodes

@@ -1,6 +1,6 @@
 #include <fmt/format.h>
 
-#include <cmath>
+#include <algorithm>
 
 #include "mien/report/detail/html.h"
 #include "mien/report/detail/page.h"
@@ -51,7 +51,19 @@ std::string decision(const DeltaDecision& deltas) {
              deltas.contact_shapes, deltas.contact_ratio, deltas.stretch);
 }
 
-std::string warnings(const PageInput& page) {
+/// "3 shapes (jawOpen, mouthClose, tongueOut)": those that `is` picks out, the first few by name; empty: none.
+std::string shapes_that(const std::vector<ShapeRow>& shapes, bool (*is)(const ShapeRow&)) {
+  std::string names;
+  int count = 0;
+  for (const ShapeRow& shape : shapes) {
+    if (!is(shape)) continue;
+    if (++count <= 6) names += (count > 1 ? ", " : "") + shape.name;
+  }
+  if (count == 0) return {};
+  return fmt::format("{} shape{} ({}{})", count, count > 1 ? "s" : "", names, count > 6 ? ", ..." : "");
+}
+
+std::vector<TransferWarning> warnings_of(const PageInput& page) {
   std::vector<TransferWarning> all = page.input.result.report.warnings;
   if (!page.data.thesis_problem.empty())
     all.push_back({"the thesis's method cannot be compared with: " + page.data.thesis_problem,
@@ -60,10 +72,20 @@ std::string warnings(const PageInput& page) {
     all.push_back({fmt::format("the guide misses landmark {} by {:.1f} % of the face",
                                page.data.worst_landmark, 100 * page.data.landmark_worst),
                    "look whether it is the same place on both faces"});
-  for (const ShapeRow& shape : page.data.shapes)
-    if (shape.flips > 20 + 4 * shape.source_flips)
-      all.push_back({fmt::format("{} turns {} triangles over", shape.name, shape.flips),
-                     "look at its picture; more landmarks there, or a smaller --exaggerate for it"});
+  const std::string folded = shapes_that(page.data.shapes, folds_more);
+  if (!folded.empty())
+    all.push_back({folded + ": many more triangles turn over than on the source",
+                   "look at the pictures; more landmarks there, or a smaller --exaggerate"});
+  const std::string stretched = shapes_that(page.data.shapes, stretches_more);
+  if (!stretched.empty())
+    all.push_back(
+        {stretched + ": an edge is stretched much more than on the source",
+         "look whether lips or lids are stuck together; landmarks on both sides of the gap part them"});
+  return all;
+}
+
+std::string warnings(const PageInput& page) {
+  const std::vector<TransferWarning> all = warnings_of(page);
   if (all.empty()) return "<p>No warnings.</p>\n";
   std::string text = "<ul class=\"warnings\">\n";
   for (const TransferWarning& warning : all)
@@ -95,8 +117,10 @@ std::string pieces_section(const PageInput& page) {
       "and "
       "what each moves with.</p>\n";
   std::vector<std::vector<std::string>> rows;
-  for (const PieceReport& piece : pieces)
-    rows.push_back({escaped(piece.piece), escaped(piece.kind), escaped(piece.way)});
+  for (const PieceReport& piece : pieces) {
+    std::vector<std::string> row{escaped(piece.piece), escaped(piece.kind), escaped(piece.way)};
+    if (std::find(rows.begin(), rows.end(), row) == rows.end()) rows.push_back(std::move(row));
+  }
   return text + "<div class=\"text\">" + table({"piece", "kind", "moves with"}, rows) + "</div>\n";
 }
 

@@ -22,6 +22,12 @@ std::string flips_of(int flips, int source_flips) {
   return flips > source_flips + 3 ? "<span class=\"bad\">" + number + "</span>" : number;
 }
 
+/// Marked where an edge is stretched much more than on the source.
+std::string stretch_of(const ShapeRow& shape) {
+  const std::string number = fmt::format("{:.1f}", shape.stretch);
+  return stretches_more(shape) ? "<span class=\"bad\">" + number + "</span>" : number;
+}
+
 bool name_holds(std::string name, std::string_view word) {
   std::transform(name.begin(), name.end(), name.begin(), [](unsigned char c) { return std::tolower(c); });
   return name.find(word) != std::string::npos;
@@ -78,8 +84,8 @@ std::string shape_card(const PageInput& page, std::size_t s) {
          image(page.target.face(in_shape(page.input.result.character, s), options),
                shape.name + " on the target") +
          "</div><h4>" + escaped(shape.name) + "</h4><p>" +
-         fmt::format("flips {} / {} &middot; stretch {:.1f} / {:.1f}", shape.source_flips,
-                     flips_of(shape.flips, shape.source_flips), shape.source_stretch, shape.stretch) +
+         fmt::format("flips {} / {} &middot; stretch {:.1f} / {}", shape.source_flips,
+                     flips_of(shape.flips, shape.source_flips), shape.source_stretch, stretch_of(shape)) +
          "</p></div>\n";
 }
 
