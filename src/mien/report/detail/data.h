@@ -26,7 +26,7 @@ inline bool folds_more(const ShapeRow& shape) {
   return shape.flips > 20 + 2 * shape.source_flips;
 }
 inline bool stretches_more(const ShapeRow& shape) {
-  return shape.stretch > 8 && shape.stretch > 3 * shape.source_stretch;
+  return shape.stretch > 8 && shape.stretch > 2 * shape.source_stretch;
 }
 
 struct JointRow {

@@ -43,12 +43,11 @@ std::string decision(const DeltaDecision& deltas) {
   if (deltas.model == DeltaModel::automatic)
     text += fmt::format(", {:.0f} % by the warp", 100 * deltas.warp_share);
   text += ": " + escaped(deltas.reason) + ".</p>\n";
-  return text +
-         fmt::format(
-             "<p class=\"soft\">{} shapes of the source close a gap; a local map misses these contacts "
-             "{:.2f} "
-             "times as far as raw displacements do; the map stretches by {:.3f} (rms, logarithm).</p>\n",
-             deltas.contact_shapes, deltas.contact_ratio, deltas.stretch);
+  return text + fmt::format(
+                    "<p class=\"soft\">{} shapes of the source close a gap; a local map misses these "
+                    "contacts {:.2f} times as far as raw displacements do; the map stretches by {:.3f} (rms, "
+                    "logarithm).</p>\n",
+                    deltas.contact_shapes, deltas.contact_ratio, deltas.stretch);
 }
 
 /// "3 shapes (jawOpen, mouthClose, tongueOut)": those that `is` picks out, the first few by name; empty: none.
@@ -114,8 +113,7 @@ std::string pieces_section(const PageInput& page) {
   if (pieces.empty()) return {};
   std::string text =
       "<h2 id=\"pieces\">Pieces beside the skin</h2>\n<p>What is in or on the head without being its skin, "
-      "and "
-      "what each moves with.</p>\n";
+      "and what each moves with.</p>\n";
   std::vector<std::vector<std::string>> rows;
   for (const PieceReport& piece : pieces) {
     std::vector<std::string> row{escaped(piece.piece), escaped(piece.kind), escaped(piece.way)};

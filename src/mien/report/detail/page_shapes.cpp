@@ -67,7 +67,7 @@ std::string shape_table(const PageInput& page) {
                                  std::to_string(shape.source_flips),
                                  flips_of(shape.flips, shape.source_flips),
                                  fmt::format("{:.1f}", shape.source_stretch),
-                                 fmt::format("{:.1f}", shape.stretch)};
+                                 stretch_of(shape)};
     if (compared)
       row.insert(row.end(), {fmt::format("{:.0f} %", 100 * shape.difference),
                              std::to_string(shape.thesis_flips), std::to_string(shape.thesis_torn)});
@@ -95,9 +95,8 @@ std::string shapes_section(const PageInput& page) {
   if (page.data.shapes.empty()) return {};
   std::string text = fmt::format(
       "<h2 id=\"shapes\">Shapes</h2>\n<p>All {} at weight 1; source left, target right. Flips are triangles "
-      "of the skin that "
-      "turn over, source / target; stretch is the worst edge, times its length at rest.</p>\n<div "
-      "class=\"cards\">\n",
+      "of the skin that turn over, source / target; stretch is the worst edge, times its length at "
+      "rest.</p>\n<div class=\"cards\">\n",
       page.data.shapes.size());
   std::vector<std::string> cards(page.data.shapes.size());
   for (std::size_t first = 0; first < cards.size(); first += shapes_at_once) {
@@ -123,12 +122,9 @@ std::string baseline_section(const PageInput& page) {
   std::string text = "<h2 id=\"baseline\">Beside the thesis's method</h2>\n";
   text += fmt::format(
       "<p>The same inputs through the method of Orvalho's thesis (2007) to the letter: thin-plate spline, "
-      "closest point, "
-      "T(x + d) &minus; T(x). On average its shapes differ from these by {:.0f} % of the displacement (rms). "
-      "It turns over "
-      "{:.1f} triangles a shape, this result {:.1f}; it stretches {:.2f} % of the edges to more than twice "
-      "their length "
-      "here in some shape.</p>\n",
+      "closest point, T(x + d) &minus; T(x). On average its shapes differ from these by {:.0f} % of the "
+      "displacement (rms). It turns over {:.1f} triangles a shape, this result {:.1f}; it stretches {:.2f} % "
+      "of the edges to more than twice their length here in some shape.</p>\n",
       100 * difference / count, thesis_flips / count, flips / count, 100 * page.data.torn_share);
   const RenderOptions options = sized(wide_width, wide_height);
   for (const std::size_t s : telling_shapes(page.data.shapes)) {

@@ -65,12 +65,10 @@ std::string filled_map(const PageInput& page) {
   options.map->colors = ColorMap::cool_warm;
   options.map->low = -1;
   options.map->legend = false;
-  return figure(
-      page.target.head(page.target.rest(), View::front, options), "vertices filled in from around",
-      fmt::format(
-          "<b>Filled in.</b> Red: no trustworthy place on the source, {:.1f} % of the vertices; motion "
-          "comes from around.",
-          100 * page.data.filled_share));
+  return figure(page.target.head(page.target.rest(), View::front, options), "vertices filled in from around",
+                fmt::format("<b>Filled in.</b> Red: no trustworthy place on the source, {:.1f} % of the "
+                            "vertices; motion comes from around.",
+                            100 * page.data.filled_share));
 }
 
 std::string fold_maps(const PageInput& page) {
@@ -95,8 +93,7 @@ std::string surfaces_section(const PageInput& page) {
   const Character &source = page.input.source, &target = page.input.result.character;
   std::string text =
       "<h2 id=\"surfaces\">Source, guide, target</h2>\n<p>The guide is the source brought onto the target: "
-      "its "
-      "triangles, the target's shape. Red dots are landmarks.</p>\n";
+      "its triangles, the target's shape. Red dots are landmarks.</p>\n";
   for (const View view : {View::front, View::three_quarter}) {
     RenderOptions options = sized(head_width, head_height);
     text += "<div class=\"three\">\n";
