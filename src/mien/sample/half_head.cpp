@@ -124,7 +124,9 @@ HalfHead make_grid(const HeadForm& form) {
       const KeyRow& row = rays.rows[j];
       const Vector3d at = form.sculpt.cast({0, row.axis_y, row.axis_z}, ray_direction(row, rays.azimuths[i]));
       const bool on_midline = i == 0 || i == columns;
-      half.grid[i][j] = half.add(at, {0.5 + rays.azimuths[i] / 360, 0.8 * j / rows},
+      // UVs give the narrow columns of the face more room than their angle.
+      const double around = 0.45 * rays.azimuths[i] / 180 + 0.55 * i / columns;
+      half.grid[i][j] = half.add(at, {0.5 + 0.5 * around, 0.8 * j / rows},
                                  j == 0 ? HalfHead::Hold::fixed : HalfHead::Hold::free, on_midline);
     }
   for (int i = 0; i < columns; ++i)

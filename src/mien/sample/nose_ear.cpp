@@ -92,7 +92,7 @@ void add_ear(HalfHead& half, const HeadForm& form) {
   const auto outline = [&](double angle) {
     const double c = std::cos(angle), s = std::sin(angle);
     // Wide above, narrow at the lobe; the front edge is nearly straight.
-    const double width = (c > 0 ? ear.back * (0.78 + 0.3 * s - 0.12 * s * s) : ear.ahead * (0.8 + 0.2 * s));
+    const double width = (c > 0 ? ear.back * (0.82 + 0.2 * s - 0.06 * s * s) : ear.ahead * (0.8 + 0.2 * s));
     const double height = s > 0 ? ear.up : ear.down;
     double b = width * c, u = height * s;
     const double tip = std::exp(-std::pow((angle - std::numbers::pi / 3) / 0.45, 2));
@@ -108,10 +108,13 @@ void add_ear(HalfHead& half, const HeadForm& form) {
       const double angle = std::numbers::pi - 2 * std::numbers::pi * a / count;
       const Vector2d p = l.size * outline(angle) + Vector2d(l.shift_back, l.shift_up);
       const double front = std::max(0.0, -std::cos(angle));
+      // Ahead the rim runs into the cheek.
+      const double sunk = l.size > 0.75 ? 0.65 * front * front : 0;
+      const double lift = (l.lift + l.front_lift * front * front) * (1 - sunk);
       // The tragus: a flap in front of the canal.
       const double tragus = std::exp(-std::pow((angle - 1.02 * std::numbers::pi) / 0.35, 2)) +
                             std::exp(-std::pow((angle + 0.98 * std::numbers::pi) / 0.35, 2));
-      ring[a] = ear.centre + p.x() * back + p.y() * up + (l.lift + l.front_lift * front * front) * out;
+      ring[a] = ear.centre + p.x() * back + p.y() * up + lift * out;
       ring[a] += tragus * (l.size > 0.55 && l.size < 0.9 ? 0.25 : 0.0) * (out + 0.6 * back);
     }
   };
