@@ -43,6 +43,7 @@ std::string decision(const DeltaDecision& deltas) {
   if (deltas.model == DeltaModel::automatic)
     text += fmt::format(", {:.0f} % by the warp", 100 * deltas.warp_share);
   text += ": " + escaped(deltas.reason) + ".</p>\n";
+  if (deltas.model != DeltaModel::automatic) return text;
   return text + fmt::format(
                     "<p class=\"soft\">{} shapes of the source close a gap; a local map misses these "
                     "contacts {:.2f} times as far as raw displacements do; the map stretches by {:.3f} (rms, "
