@@ -199,7 +199,15 @@ void SceneWriter::write_scenes(const Json& carried) {
   if (carried.contains("scene") && carried["scene"].is_number_unsigned() &&
       carried["scene"].get<std::uint64_t>() < scenes.size())
     scene = carried["scene"].get<int>();
+  // Joints of a part that is shown have to be in the scene, whoever added them.
+  std::set<int> joint_roots;
+  for (const Skin& skin : character_.skins)
+    for (int joint : skin.joints) {
+      while (parents_[joint] >= 0) joint = parents_[joint];
+      joint_roots.insert(joint);
+    }
   const auto was_placed = [&](int n) {  // a root that the file showed nowhere stays unseen
+    if (joint_roots.contains(n)) return false;
     return n < static_cast<int>(character_.nodes.size()) && carried.contains("scenes") &&
            character_.nodes[n].parent < 0;
   };
