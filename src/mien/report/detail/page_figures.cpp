@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "mien/picture/plot.h"
@@ -11,16 +12,24 @@
 namespace mien::detail {
 namespace {
 
-std::string plot_of(const ClipRows& clip, const CurveRow& curve) {
-  std::vector<Series> series{{"source", clip.seconds, curve.source}, {"target", clip.seconds, curve.target}};
-  if (!curve.copied.empty()) series.push_back({"target, clip copied unchanged", clip.seconds, curve.copied});
+/// One curve of the target against the source's.
+std::string plot_of(const ClipRows& clip, const CurveRow& curve, const std::vector<double>& target,
+                    const char* how) {
   PlotOptions options;
   options.title = curve.name;
   options.x_label = "seconds";
   options.y_label = "\u03b5";
   options.width = 560;
   options.height = 280;
+  const std::vector<Series> series{{"source", clip.seconds, curve.source}, {how, clip.seconds, target}};
   return "<div class=\"plot\">" + line_plot_svg(series, options) + "</div>\n";
+}
+
+/// As in the thesis's figure: the copied clip left, the transferred one right.
+std::string plots_of(const ClipRows& clip, const CurveRow& curve) {
+  std::string text;
+  if (!curve.copied.empty()) text += plot_of(clip, curve, curve.copied, "target, clip copied unchanged");
+  return text + plot_of(clip, curve, curve.target, "target");
 }
 
 std::vector<std::string> cells_of(const CurveAgreement& agreement) {
@@ -41,7 +50,7 @@ std::string curves_of(const ClipRows& clip, const std::vector<CurveRow>& curves,
   if (copied) head.insert(head.end(), {"copied: correlation", "rms difference", "gain"});
   std::vector<std::vector<std::string>> rows;
   for (const CurveRow& curve : curves) {
-    plots += plot_of(clip, curve);
+    plots += plots_of(clip, curve);
     std::vector<std::string> row{escaped(curve.name)};
     for (std::string& cell : cells_of(curve.target_agreement)) row.push_back(std::move(cell));
     if (copied)
@@ -72,7 +81,7 @@ double like_thesis(const TransferResult& result, const ThesisStep& step) {
 }
 
 std::string time_text(double seconds) {
-  if (seconds != seconds) return "&ndash;";
+  if (std::isnan(seconds)) return "&ndash;";
   if (seconds < 1e-4) return "&lt; 0.0001";
   return seconds < 0.0995 ? fmt::format("{:.4f}", seconds) : fmt::format("{:.2f}", seconds);
 }
@@ -96,7 +105,7 @@ std::string thesis_chart(const PageInput& page) {
   std::vector<std::string> labels;
   std::vector<double> here, baseline, then;
   for (const ThesisStep& step : thesis_steps()) {
-    if (step.step.empty()) continue;
+    if (std::isnan(like_thesis(page.input.result, step))) continue;
     labels.push_back(std::string(step.name));
     here.push_back(like_thesis(page.input.result, step));
     if (page.data.thesis) baseline.push_back(like_thesis(*page.data.thesis, step));

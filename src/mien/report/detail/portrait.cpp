@@ -15,6 +15,32 @@ constexpr double most_around = 0.4;
 /// Landmarks this many times as far from the middle as the median one are the crown's or the neck's, not the face's.
 constexpr double outlying = 1.8;
 
+/// A character larger than this many landmark boxes has a body: only what is around its face is shown.
+constexpr double most_boxes = 4, around_head = 0.9;
+
+/// The vertices that make the head.
+Points head_of(const std::vector<Points>& rest, const std::vector<LandmarkPoint>& landmarks) {
+  PointsD marks(static_cast<Eigen::Index>(landmarks.size()), 3);
+  for (std::size_t i = 0; i < landmarks.size(); ++i)
+    marks.row(static_cast<Eigen::Index>(i)) = landmarks[i].position.transpose();
+  Eigen::Index count = 0;
+  for (const Points& part : rest) count += part.rows();
+  Points all(count, 3);
+  count = 0;
+  for (const Points& part : rest) {
+    all.middleRows(count, part.rows()) = part;
+    count += part.rows();
+  }
+  if (bounding_box(all).diagonal() <= most_boxes * grown_box(marks, 0).diagonal()) return all;
+  const Box box = grown_box(marks, around_head);
+  std::vector<Eigen::Index> inside;
+  for (Eigen::Index v = 0; v < all.rows(); ++v) {
+    const Eigen::Array3d x = all.row(v).transpose().cast<double>().array();
+    if ((x >= box.low.array()).all() && (x <= box.high.array()).all()) inside.push_back(v);
+  }
+  return inside.empty() ? all : Points(all(inside, Eigen::all));
+}
+
 /// The landmarks of the face proper.
 std::vector<LandmarkPoint> inner_landmarks(const std::vector<LandmarkPoint>& landmarks) {
   Eigen::Vector3d middle = Eigen::Vector3d::Zero();
@@ -79,13 +105,13 @@ FrameOptions frame_of(const RenderOptions& options, View view, const Eigen::Matr
 
 Portrait::Portrait(const Character& character, const std::vector<LandmarkPoint>& landmarks,
                    const Eigen::Matrix3d& facing)
-    : character_(character), facing_(facing), rest_(at_rest(character)), renderer_(character) {
+    : facing_(facing), rest_(at_rest(character)), renderer_(character), head_(head_of(rest_, landmarks)) {
   face_corners_ = corners_of_face(character, rest_, inner_landmarks(landmarks), facing);
 }
 
 Picture Portrait::head(const Renderer& renderer, const std::vector<Points>& posed, View view,
                        RenderOptions options) const {
-  options.camera = frame_head(character_, rest_, frame_of(options, view, facing_));
+  options.camera = frame_points(head_, frame_of(options, view, facing_));
   return renderer.render(posed, options);
 }
 

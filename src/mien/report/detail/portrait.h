@@ -36,10 +36,10 @@ class Portrait {
   const Renderer& renderer() const { return renderer_; }
 
  private:
-  const Character& character_;
   Eigen::Matrix3d facing_;
   std::vector<Points> rest_;
   Renderer renderer_;
+  Points head_;          // what `head` holds
   Points face_corners_;  // of the box that `face` holds
 };
 
