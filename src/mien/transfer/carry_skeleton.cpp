@@ -51,32 +51,11 @@ std::vector<char> nodes_to_carry(const Character& source, const std::vector<int>
   return carry;
 }
 
-/// All skins' joints in one list, then joints that hold parts without a skin.
-void collect_joints(const Character& source, CarriedSkeleton& result) {
-  result.joint_of_node.assign(source.nodes.size(), -1);
-  const auto add = [&](int node) {
-    int& joint = result.joint_of_node[at(node)];
-    if (joint < 0) {
-      joint = static_cast<int>(result.skin.joints.size());
-      result.skin.joints.push_back(node);
-    }
-    return joint;
-  };
-  for (const Skin& skin : source.skins) {
-    result.skin_joint.emplace_back();
-    for (const int node : skin.joints) result.skin_joint.back().push_back(add(node));
-  }
-  for (const Part& part : source.parts) {
-    const int node = holding_joint(source, part);
-    if (node >= 0) add(node);
-  }
-}
-
 /// Per joint of the joined list its matrix at bind time, in model space.
-std::vector<Eigen::Matrix4d> bind_matrices(const Character& source, const CarriedSkeleton& skeleton,
+std::vector<Eigen::Matrix4d> bind_matrices(const Character& source, const JointList& joints,
                                            const std::vector<Eigen::Matrix4d>& model) {
   std::vector<Eigen::Matrix4d> bind;
-  for (const int node : skeleton.skin.joints) bind.push_back(model[at(node)]);
+  for (const int node : joints.nodes) bind.push_back(model[at(node)]);
   for (std::size_t s = source.skins.size(); s-- > 0;) {
     const Skin& skin = source.skins[s];
     for (std::size_t j = 0; j < skin.joints.size() && j < skin.inverse_bind.size(); ++j) {
@@ -84,7 +63,7 @@ std::vector<Eigen::Matrix4d> bind_matrices(const Character& source, const Carrie
       if (!lu.isInvertible())
         throw invalid_input("skin " + skin.name + ", joint " + source.nodes[at(skin.joints[j])].name,
                             "its inverse bind matrix is singular", "an invertible matrix");
-      bind[at(skeleton.skin_joint[s][j])] = lu.inverse();
+      bind[at(joints.skin_joint[s][j])] = lu.inverse();
     }
   }
   return bind;
@@ -100,11 +79,33 @@ int holding_joint(const Character& source, const Part& part) {
   return -1;
 }
 
+JointList list_joints(const Character& source) {
+  JointList list;
+  list.joint_of_node.assign(source.nodes.size(), -1);
+  const auto add = [&](int node) {
+    int& joint = list.joint_of_node[at(node)];
+    if (joint < 0) {
+      joint = static_cast<int>(list.nodes.size());
+      list.nodes.push_back(node);
+    }
+    return joint;
+  };
+  for (const Skin& skin : source.skins) {
+    list.skin_joint.emplace_back();
+    for (const int node : skin.joints) list.skin_joint.back().push_back(add(node));
+  }
+  for (const Part& part : source.parts) {
+    const int node = holding_joint(source, part);
+    if (node >= 0) add(node);
+  }
+  return list;
+}
+
 CarriedSkeleton carry_skeleton(const Character& source, const SpaceMap& map, int first_node) {
   CarriedSkeleton result;
   const auto model = model_matrices(source);
-  collect_joints(source, result);
-  const auto bind = bind_matrices(source, result, model);
+  const JointList joints = list_joints(source);
+  const auto bind = bind_matrices(source, joints, model);
 
   // A joint's rest may differ from its bind pose (a character saved in a pose): the difference stays its own.
   std::vector<Eigen::Matrix4d> carried_model(source.nodes.size());
@@ -114,7 +115,7 @@ CarriedSkeleton carry_skeleton(const Character& source, const SpaceMap& map, int
     const Eigen::Vector3d origin = model[n].topRightCorner<3, 1>();
     result.growth[n] = map.scale(origin);
     carried_model[n] = carry_matrix(model[n], map);
-    const int joint = result.joint_of_node[n];
+    const int joint = joints.joint_of_node[n];
     if (joint < 0) continue;
     carried_bind[at(joint)] = carry_matrix(bind[at(joint)], map);
     Eigen::Matrix4d difference = bind[at(joint)].inverse() * model[n];
@@ -122,7 +123,7 @@ CarriedSkeleton carry_skeleton(const Character& source, const SpaceMap& map, int
     if (!difference.isIdentity(1e-5)) carried_model[n] = carried_bind[at(joint)] * difference;
   }
 
-  const auto carry = nodes_to_carry(source, result.joint_of_node);
+  const auto carry = nodes_to_carry(source, joints.joint_of_node);
   result.node_of.assign(source.nodes.size(), -1);
   int next = first_node;
   for (std::size_t n = 0; n < source.nodes.size(); ++n)
@@ -139,9 +140,9 @@ CarriedSkeleton carry_skeleton(const Character& source, const SpaceMap& map, int
     result.nodes.push_back(std::move(node));
   }
   result.skin.name = source.skins.empty() ? "" : source.skins.front().name;
-  for (std::size_t j = 0; j < result.skin.joints.size(); ++j) {
+  for (std::size_t j = 0; j < joints.nodes.size(); ++j) {
     result.skin.inverse_bind.push_back(carried_bind[j].inverse());
-    result.skin.joints[j] = result.node_of[at(result.skin.joints[j])];
+    result.skin.joints.push_back(result.node_of[at(joints.nodes[j])]);
   }
   if (!source.skins.empty() && source.skins.front().skeleton >= 0)
     result.skin.skeleton = result.node_of[at(source.skins.front().skeleton)];

@@ -18,13 +18,20 @@ struct SpaceMap {
   std::function<double(const Eigen::Vector3d&)> scale;              ///< how lengths grow there
 };
 
+/// All skins' joints in one list.
+struct JointList {
+  std::vector<int> nodes;                    ///< #J source nodes
+  std::vector<std::vector<int>> skin_joint;  ///< per source skin, per joint: index into `nodes`
+  std::vector<int> joint_of_node;            ///< per source node: index into `nodes`, -1: not a joint
+};
+/// Skins in order, then joints that hold parts without a skin.
+JointList list_joints(const Character& source);
+
 struct CarriedSkeleton {
-  std::vector<Node> nodes;   ///< to be appended to the target's nodes; parents count from `first_node`
-  std::vector<int> node_of;  ///< per source node: its index in the target, -1: not carried
-  Skin skin;                 ///< all source joints, inverse bind matrices for the target's model space
-  std::vector<std::vector<int>> skin_joint;  ///< per source skin, per joint: index into skin.joints
-  std::vector<int> joint_of_node;            ///< per source node: index into skin.joints, -1: not a joint
-  std::vector<double> growth;                ///< per source node: how much longer its translations become
+  std::vector<Node> nodes;     ///< to be appended to the target's nodes; parents count from `first_node`
+  std::vector<int> node_of;    ///< per source node: its index in the target, -1: not carried
+  Skin skin;                   ///< all source joints, inverse bind matrices for the target's model space
+  std::vector<double> growth;  ///< per source node: how much longer its translations become
 };
 
 /// Places every joint of every skin, their ancestors and the nodes that hold no part. Hierarchy, names and local

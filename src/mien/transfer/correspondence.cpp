@@ -63,6 +63,80 @@ std::vector<SourcePoint> find_correspondence(const Registration& registration, c
   return points;
 }
 
+namespace {
+
+/// Marks the edges (three a triangle) whose ends a shape pulls apart.
+void mark_torn(const PointsD& delta, const Triangles& source_triangles, const Surface& target, double unit,
+               const std::vector<SourcePoint>& points, std::vector<char>& torn) {
+  if (!(delta.cwiseAbs().maxCoeff() > 0.02 * unit / 2)) return;
+  PointsD carried(target.positions.rows(), 3);
+  for (std::size_t v = 0; v < points.size(); ++v) {
+    carried.row(static_cast<Eigen::Index>(v)).setZero();
+    for (int k = 0; k < 3; ++k)
+      carried.row(static_cast<Eigen::Index>(v)) +=
+          points[v].barycentric[k] * delta.row(source_triangles(points[v].triangle, k));
+  }
+  parallel_for(
+      static_cast<std::size_t>(target.triangles.rows()), 4096, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t t = begin; t < end; ++t)
+          for (int k = 0; k < 3; ++k) {
+            const int a = target.triangles(static_cast<Eigen::Index>(t), k);
+            const int b = target.triangles(static_cast<Eigen::Index>(t), (k + 1) % 3);
+            const double apart = (carried.row(a) - carried.row(b)).norm();
+            if (apart > 0.02 * unit && apart > 4 * (target.positions.row(a) - target.positions.row(b)).norm())
+              torn[3 * t + static_cast<std::size_t>(k)] = 1;
+          }
+      });
+}
+
+void mark_torn_by_weights(const TearInput& input, const Triangles& source_triangles, const Surface& target,
+                          const std::vector<SourcePoint>& points, std::vector<char>& torn) {
+  Eigen::VectorXd a(input.weights.cols());
+  const auto add = [&](int vertex, double sign) {
+    const SourcePoint& point = points[static_cast<std::size_t>(vertex)];
+    for (int k = 0; k < 3; ++k)
+      for (Eigen::SparseMatrix<double, Eigen::RowMajor>::InnerIterator entry(
+               input.weights, source_triangles(point.triangle, k));
+           entry; ++entry)
+        a[entry.col()] += sign * point.barycentric[k] * entry.value();
+  };
+  for (Eigen::Index t = 0; t < target.triangles.rows(); ++t)
+    for (int k = 0; k < 3; ++k) {
+      a.setZero();
+      add(target.triangles(t, k), 1);
+      add(target.triangles(t, (k + 1) % 3), -1);
+      if (a.lpNorm<1>() > 1.2) torn[3 * static_cast<std::size_t>(t) + static_cast<std::size_t>(k)] = 1;
+    }
+}
+
+}  // namespace
+
+void reject_torn(const TearInput& input, const Surface& source, const Surface& target,
+                 std::vector<SourcePoint>& points) {
+  std::vector<char> torn(3 * static_cast<std::size_t>(target.triangles.rows()), 0);
+  for (std::size_t s = 0; s < input.shapes; ++s)
+    mark_torn(input.delta(s), source.triangles, target, input.unit, points, torn);
+  if (input.weights.rows() > 0) mark_torn_by_weights(input, source.triangles, target, points, torn);
+  constexpr int rounds = 3;
+  constexpr double share = 0.4;
+  for (int round = 0; round < rounds; ++round) {
+    std::vector<int> edges(points.size(), 0), bad(points.size(), 0);
+    for (std::size_t e = 0; e < torn.size(); ++e) {
+      const Eigen::Index t = static_cast<Eigen::Index>(e / 3);
+      const int a = target.triangles(t, static_cast<int>(e % 3)),
+                b = target.triangles(t, static_cast<int>((e + 1) % 3));
+      if (!points[static_cast<std::size_t>(a)].accepted || !points[static_cast<std::size_t>(b)].accepted)
+        continue;
+      for (const int v : {a, b}) {
+        ++edges[static_cast<std::size_t>(v)];
+        bad[static_cast<std::size_t>(v)] += torn[e];
+      }
+    }
+    for (std::size_t v = 0; v < points.size(); ++v)
+      if (bad[v] > 0 && bad[v] >= share * edges[v]) points[v].accepted = false;
+  }
+}
+
 struct AttributeCarrier::State {
   std::vector<SourcePoint> correspondence;
   Triangles source_triangles;

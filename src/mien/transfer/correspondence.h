@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <Eigen/Sparse>
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -31,6 +32,22 @@ struct CorrespondenceOptions {
 std::vector<SourcePoint> find_correspondence(const Registration& registration, const Surface& source,
                                              const Surface& target,
                                              const CorrespondenceOptions& options = {});
+
+/// Takes back the acceptance of vertices that have been caught by another part of the face that lies close in the neutral
+/// (the inside of the other lip): those that some shape or joint would tear away from their neighbours. An edge is torn
+/// when its ends' displacements differ by more than four times its length and 2 % of the face, or their skin weights by
+/// more than 1.2 in all; a vertex is taken back when 40 % of its edges are torn, three times over.
+///   delta(s)  #V source x 3, the displacements of shape s at the target's scale
+///   weights   #V source x #J, or empty
+///   cost      linear in shapes x edges
+struct TearInput {
+  std::size_t shapes = 0;
+  std::function<PointsD(std::size_t)> delta;
+  Eigen::SparseMatrix<double, Eigen::RowMajor> weights;
+  double unit = 1;
+};
+void reject_torn(const TearInput& input, const Surface& source, const Surface& target,
+                 std::vector<SourcePoint>& points);
 
 /// Carries per-vertex attributes from the source's vertices to the target's: barycentric where the correspondence is
 /// accepted, harmonic (cotangent Laplacian of the target) in between. Linear; constants stay constant, so skin weights

@@ -100,7 +100,9 @@ class Run {
   DeltaMaps maps_;
   std::unique_ptr<ThinPlateSpline> dense_, landmark_spline_;
   std::unique_ptr<AttributeCarrier> carrier_;
-  PointsD warped_source_;  // pooled source vertices on the target
+  PointsD warped_source_;        // pooled source vertices on the target
+  WeightMatrix source_weights_;  // pooled source vertices x joints; empty without a skin
+  std::vector<detail::PieceMotion> piece_motions_;
   std::vector<detail::PiecePlan> plans_;
   CarriedSkeleton skeleton_;
 };
@@ -166,13 +168,30 @@ void Run::find_guide() {
 void Run::find_places() {
   const bool thesis = options_.method == TransferMethod::thesis;
   const Surface &source = source_surface_.surface, &target = target_surface_.surface;
-  carrier_ = std::make_unique<AttributeCarrier>(thesis ? thesis_correspondence(registration_, source, target)
-                                                       : find_correspondence(registration_, source, target),
-                                                source, target);
+  if (!source_.skins.empty())
+    source_weights_ = detail::pooled_skin_weights(source_, source_pool_, list_joints(source_));
+  std::vector<SourcePoint> points = thesis ? thesis_correspondence(registration_, source, target)
+                                           : find_correspondence(registration_, source, target);
+  if (!thesis) {
+    TearInput tears{source_.shapes.size(),
+                    [&](std::size_t s) {
+                      return registration_.similarity.of_vectors(
+                          pooled_delta(source_.shapes[s])(source_surface_.vertices, Eigen::all));
+                    },
+                    {},
+                    registration_.unit};
+    if (source_weights_.rows() > 0)
+      tears.weights = detail::select_rows(source_weights_, source_surface_.vertices);
+    reject_torn(tears, source, target, points);
+  }
+  carrier_ = std::make_unique<AttributeCarrier>(std::move(points), source, target);
   warped_source_ = thesis ? (*landmark_spline_)(source_pool_.positions)
                           : (*dense_)(registration_.similarity(source_pool_.positions));
   for (std::size_t r = 0; r < source_surface_.vertices.size(); ++r)
     warped_source_.row(source_surface_.vertices[r]) = registration_.guide.row(static_cast<Eigen::Index>(r));
+  piece_motions_ = detail::piece_motions(
+      source_pool_, source_.shapes.size(), [&](std::size_t s) { return pooled_delta(source_.shapes[s]); },
+      source_weights_, registration_.unit / registration_.similarity.scale);
   plans_ = detail::plan_pieces(piece_input());
   for (const detail::PiecePlan& plan : plans_)
     report_.pieces.push_back({target_pool_.piece_name[at(plan.piece)],
@@ -189,6 +208,7 @@ detail::PieceInput Run::piece_input() const {
           target_surface_,
           warped_source_,
           registration_.similarity,
+          piece_motions_,
           registration_.unit};
 }
 
@@ -331,9 +351,8 @@ void Run::count_flips(std::size_t shape, const PointsD& source_rows, const Point
 
 void Run::carry_weights() {
   if (source_.skins.empty()) return;
-  const WeightMatrix source = detail::pooled_skin_weights(source_, source_pool_, skeleton_);
-  const Eigen::Index joints = source.cols();
-  const WeightMatrix skin_source = detail::select_rows(source, source_surface_.vertices);
+  const Eigen::Index joints = source_weights_.cols();
+  const WeightMatrix skin_source = detail::select_rows(source_weights_, source_surface_.vertices);
   const WeightMatrix skin = limit_influences((*carrier_)(skin_source), options_.max_influences);
   Eigen::Index head_joint = 0;
   Eigen::VectorXd total = Eigen::VectorXd::Zero(joints);
@@ -352,7 +371,7 @@ void Run::carry_weights() {
   const detail::PieceInput pieces = piece_input();
   for (const detail::PiecePlan& plan : plans_)
     append(limit_influences(
-               detail::carry_piece_weights(pieces, plan, source, skin, static_cast<int>(head_joint)),
+               detail::carry_piece_weights(pieces, plan, source_weights_, skin, static_cast<int>(head_joint)),
                options_.max_influences),
            plan.vertices);
   WeightMatrix all(target_pool_.positions.rows(), joints);

@@ -117,7 +117,7 @@ int flipped_triangles(const Surface& surface, const PointsD& deltas) {
   return count;
 }
 
-WeightMatrix pooled_skin_weights(const Character& source, const Pool& pool, const CarriedSkeleton& skeleton) {
+WeightMatrix pooled_skin_weights(const Character& source, const Pool& pool, const JointList& joints) {
   std::vector<Eigen::Triplet<double>> entries;
   for (std::size_t v = 0; v < pool.first_copy.size(); ++v) {
     const auto [p, vertex] = pool.first_copy[v];
@@ -125,7 +125,7 @@ WeightMatrix pooled_skin_weights(const Character& source, const Pool& pool, cons
     const int row = static_cast<int>(v);
     if (part.skin < 0) {
       const int node = holding_joint(source, part);
-      if (node >= 0) entries.emplace_back(row, skeleton.joint_of_node[at(node)], 1.0);
+      if (node >= 0) entries.emplace_back(row, joints.joint_of_node[at(node)], 1.0);
       continue;
     }
     if (part.skin_weights.empty()) continue;
@@ -133,11 +133,11 @@ WeightMatrix pooled_skin_weights(const Character& source, const Pool& pool, cons
     const int begin = part.skin_weights.offsets[at(vertex)], end = part.skin_weights.offsets[at(vertex) + 1];
     for (int i = begin; i < end; ++i) sum += part.skin_weights.weights[at(i)];
     for (int i = begin; i < end && sum > 0; ++i)
-      entries.emplace_back(row, skeleton.skin_joint[at(part.skin)][at(part.skin_weights.joints[at(i)])],
+      entries.emplace_back(row, joints.skin_joint[at(part.skin)][at(part.skin_weights.joints[at(i)])],
                            part.skin_weights.weights[at(i)] / sum);
   }
   WeightMatrix weights(static_cast<Eigen::Index>(pool.first_copy.size()),
-                       static_cast<Eigen::Index>(skeleton.skin.joints.size()));
+                       static_cast<Eigen::Index>(joints.nodes.size()));
   weights.setFromTriplets(entries.begin(), entries.end());
   return weights;
 }

@@ -26,7 +26,7 @@ Shape shape_of_target(const Shape& source, const Pool& pool, const Character& ch
 int flipped_triangles(const Surface& surface, const PointsD& deltas);
 
 /// Skin weights of pooled vertices (#W x #J), parts that hang below a joint bound to it.
-WeightMatrix pooled_skin_weights(const Character& source, const Pool& pool, const CarriedSkeleton& skeleton);
+WeightMatrix pooled_skin_weights(const Character& source, const Pool& pool, const JointList& joints);
 
 WeightMatrix select_rows(const WeightMatrix& matrix, const std::vector<int>& rows);
 

@@ -8,6 +8,7 @@
 #include <array>
 #include <cctype>
 #include <cmath>
+#include <limits>
 #include <map>
 
 #include "mien/geometry/surface_query.h"
@@ -65,14 +66,19 @@ PieceKind kind_of(const Pool& pool, int piece, double unit) {
   return is_ball(rows(pool.positions, vertices_of(pool, piece)), unit) ? PieceKind::eye : PieceKind::other;
 }
 
-/// Source pieces that may give to a target piece: not skin, not worn on the skin, of the same kind and row when both
+/// Source pieces that may give to a target piece: not worn on the skin, skin only to what has no kind, of the same kind and row when both
 /// sides say what they are.
 std::vector<char> donor_pieces(const PieceInput& in, PieceKind kind, const std::string& name,
                                const std::vector<PieceKind>& source_kinds) {
   std::vector<char> same(source_kinds.size(), 0), any(source_kinds.size(), 0);
   bool found_same = false;
   for (std::size_t p = 0; p < source_kinds.size(); ++p) {
-    if (in.source_skin[p] || source_kinds[p] == PieceKind::lash) continue;
+    if (source_kinds[p] == PieceKind::lash) continue;
+    if (in.source_skin[p]) {
+      // A loose mouth bag is part of many a source's skin.
+      any[p] = kind == PieceKind::other;
+      continue;
+    }
     const int row = row_from_name(name), source_row = row_from_name(in.source.piece_name[p]);
     if (row * source_row < 0) continue;
     const bool eye = kind == PieceKind::eye, source_eye = source_kinds[p] == PieceKind::eye;
@@ -83,15 +89,17 @@ std::vector<char> donor_pieces(const PieceInput& in, PieceKind kind, const std::
   return found_same ? same : any;
 }
 
-/// Where the piece's donors are, or false when nothing of the source lies near.
-bool find_donors(const PieceInput& in, const std::vector<char>& donors, const std::vector<PieceKind>& kinds,
-                 PiecePlan& plan) {
-  const PoolSurface source = select_pieces(in.source, donors);
-  if (source.surface.triangles.rows() == 0) return false;
-  PointsD warped = rows(in.warped_source, source.vertices);
-  const SurfaceQuery query(warped, source.surface.triangles);
-  std::vector<double> distance;
+/// The places on the donor pieces closest to the piece's vertices; the number of them on each donor.
+std::map<int, int> closest_on(const PieceInput& in, const std::vector<char>& donors, PiecePlan& plan,
+                              double& median_distance) {
   std::map<int, int> votes;
+  const PoolSurface source = select_pieces(in.source, donors);
+  plan.triangle.clear();
+  plan.barycentric.clear();
+  median_distance = std::numeric_limits<double>::infinity();
+  if (source.surface.triangles.rows() == 0) return votes;
+  const SurfaceQuery query(rows(in.warped_source, source.vertices), source.surface.triangles);
+  std::vector<double> distance;
   for (const int v : plan.vertices) {
     const auto hit = query.closest(in.target.positions.row(v).transpose());
     distance.push_back(hit.distance);
@@ -101,15 +109,61 @@ bool find_donors(const PieceInput& in, const std::vector<char>& donors, const st
   }
   std::nth_element(distance.begin(), distance.begin() + static_cast<long>(distance.size() / 2),
                    distance.end());
-  if (distance[distance.size() / 2] > 0.15 * in.unit) return false;
-  for (const auto& [piece, count] : votes) {
-    if (count < 0.05 * static_cast<double>(plan.vertices.size())) continue;
-    plan.same_kind = (plan.donor_vertices.empty() || plan.same_kind) && plan.kind != PieceKind::other &&
-                     kinds[at(piece)] == plan.kind;
-    const auto members = vertices_of(in.source, piece);
+  median_distance = distance[distance.size() / 2];
+  return votes;
+}
+
+constexpr double rigid_bend = 0.12;
+
+/// Rigid pieces that make the same motion (the teeth of one jaw) count as one; what bends stands alone.
+bool moves_alike(const PieceInput& in, int a, int b) {
+  const PieceMotion &ma = in.source_motion[at(a)], &mb = in.source_motion[at(b)];
+  if (a == b) return true;
+  if (ma.bend > rigid_bend || mb.bend > rigid_bend) return false;
+  const double size = std::max(ma.signature.norm(), mb.signature.norm());
+  return (ma.signature - mb.signature).norm() <= 0.3 * size + 1e-3 * in.unit / in.similarity.scale;
+}
+
+/// Of the pieces with votes the group that the piece should move with: the one its name asks for (lower teeth move more
+/// than upper), else the one with most votes.
+std::vector<char> choose_group(const PieceInput& in, const std::map<int, int>& votes, const PiecePlan& plan,
+                               int row) {
+  int best = -1;
+  double best_score = -std::numeric_limits<double>::infinity();
+  for (const auto& [leader, own] : votes) {
+    int count = 0;
+    for (const auto& [other, more] : votes) count += moves_alike(in, leader, other) ? more : 0;
+    const bool counts = count >= 0.1 * static_cast<double>(plan.vertices.size()) &&
+                        in.source_motion[at(leader)].bend <= rigid_bend;
+    const double motion = in.source_motion[at(leader)].signature.norm();
+    double score = count;
+    if (plan.kind == PieceKind::teeth && row != 0)
+      score = counts ? (row < 0 ? motion : -motion) : score - 1e9;
+    if (score <= best_score) continue;
+    best_score = score;
+    best = leader;
+  }
+  std::vector<char> group(in.source_skin.size(), 0);
+  for (const auto& [other, more] : votes) group[at(other)] = moves_alike(in, best, other);
+  return group;
+}
+
+/// Where the piece's donors are, or false when nothing of the source lies near.
+bool find_donors(const PieceInput& in, const std::vector<char>& donors, const std::vector<PieceKind>& kinds,
+                 PiecePlan& plan) {
+  double distance = 0;
+  const auto votes = closest_on(in, donors, plan, distance);
+  if (votes.empty() || distance > 0.15 * in.unit) return false;
+  const auto group = choose_group(in, votes, plan, row_from_name(in.target.piece_name[at(plan.piece)]));
+  closest_on(in, group, plan, distance);
+  plan.same_kind = plan.kind != PieceKind::other;
+  for (std::size_t p = 0; p < group.size(); ++p) {
+    if (!group[p]) continue;
+    plan.same_kind = plan.same_kind && kinds[p] == plan.kind;
+    const auto members = vertices_of(in.source, static_cast<int>(p));
     plan.donor_vertices.insert(plan.donor_vertices.end(), members.begin(), members.end());
   }
-  return !plan.donor_vertices.empty();
+  return true;
 }
 
 struct SkinFit {
@@ -168,7 +222,7 @@ PointsD carry_from_donors(const PieceInput& in, const PiecePlan& plan, const Poi
   const Eigen::Matrix3d& turn = in.similarity.rotation;
   if (!(delta.cwiseAbs().maxCoeff() > 0)) return PointsD::Zero(own.rows(), 3);
   const RigidMotion motion = fit_rigid(rest, delta);
-  if (motion.residual < 0.12) {
+  if (motion.residual < rigid_bend) {
     RigidMotion carried;
     carried.rotation = turn * motion.rotation * turn.transpose();
     carried.centre = own.colwise().mean().transpose();
@@ -223,6 +277,38 @@ PieceKind kind_from_name(const std::string& name) {
   if (has(n, {"tongue"})) return PieceKind::tongue;
   if (has(n, {"eye", "cornea", "iris", "pupil", "sclera"}) && !has(n, {"lid"})) return PieceKind::eye;
   return PieceKind::other;
+}
+
+std::vector<PieceMotion> piece_motions(const Pool& source, std::size_t shapes,
+                                       const std::function<PointsD(std::size_t)>& deltas,
+                                       const WeightMatrix& weights, double unit) {
+  const std::size_t count = at(source.piece_count);
+  std::vector<std::vector<int>> members(count);
+  for (std::size_t v = 0; v < source.piece.size(); ++v)
+    members[at(source.piece[v])].push_back(static_cast<int>(v));
+  const Eigen::Index width = 3 * static_cast<Eigen::Index>(shapes);
+  std::vector<PieceMotion> motions(count);
+  std::vector<double> bent(count, 0), moved(count, 0);
+  for (PieceMotion& motion : motions) motion.signature = Eigen::VectorXd::Zero(width + weights.cols());
+  for (std::size_t s = 0; s < shapes; ++s) {
+    const PointsD delta = deltas(s);
+    for (std::size_t p = 0; p < count; ++p) {
+      const PointsD own = rows(delta, members[p]);
+      if (!(own.cwiseAbs().maxCoeff() > 0)) continue;
+      const RigidMotion rigid = fit_rigid(rows(source.positions, members[p]), own);
+      motions[p].signature.segment<3>(3 * static_cast<Eigen::Index>(s)) = rigid.shift;
+      bent[p] += std::pow(rigid.residual * own.norm(), 2);
+      moved[p] += own.squaredNorm();
+    }
+  }
+  for (std::size_t p = 0; p < count; ++p) {
+    for (const int v : weights.rows() > 0 ? members[p] : std::vector<int>())
+      for (WeightMatrix::InnerIterator entry(weights, v); entry; ++entry)
+        motions[p].signature[width + entry.col()] +=
+            unit * entry.value() / static_cast<double>(members[p].size());
+    motions[p].bend = moved[p] > 0 ? std::sqrt(bent[p] / moved[p]) : 0;
+  }
+  return motions;
 }
 
 std::vector<PiecePlan> plan_pieces(const PieceInput& in) {

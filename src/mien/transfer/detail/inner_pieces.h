@@ -2,6 +2,7 @@
 /// What is in or on the head without being its skin: eyes, teeth, tongue, lashes. Each piece of the target is joined to
 /// pieces of the source by name or by where they lie, or follows the skin around it; none is dragged onto the skin.
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -37,6 +38,18 @@ struct PiecePlan {
   double growth = 1;                ///< how lengths grow there, source to target
 };
 
+/// How a source piece moves over all shapes and with all joints.
+struct PieceMotion {
+  Eigen::VectorXd
+      signature;    ///< mean displacement a shape (3 #S), then mean skin weight a joint times the face's size
+  double bend = 0;  ///< what of its motion is not rigid: root of squares over root of squares of the motion
+};
+
+///   deltas(s)  pooled source vertices x 3 of shape s; weights: pooled source vertices x #J, or empty
+std::vector<PieceMotion> piece_motions(const Pool& source, std::size_t shapes,
+                                       const std::function<PointsD(std::size_t)>& deltas,
+                                       const WeightMatrix& weights, double unit);
+
 struct PieceInput {
   const Pool& source;
   const Pool& target;
@@ -45,6 +58,7 @@ struct PieceInput {
   const PoolSurface& target_surface;
   const PointsD& warped_source;  ///< pooled source positions brought to the target by the dense spline
   const Similarity& similarity;
+  const std::vector<PieceMotion>& source_motion;  ///< per source piece
   double unit = 1;
 };
 
