@@ -145,16 +145,15 @@ TEST(Report, TellsEverythingOfAFullRig) {
   expect_thesis_times_of(t.result.report, json);
 }
 
-TEST(Report, TheBaselineAloneHasNoComparison) {
-  Character source = human_with({"jawOpen"});
-  source.clips.clear();
-  const Character target = make_sample("creature");
+TEST(Report, JointsAloneByTheBaselineLeaveSectionsOut) {
+  const Character source = human_with({}), target = make_sample("creature");
   TransferOptions options;
   options.method = TransferMethod::thesis;
   const TransferResult result = transfer(source, target, options);
   const Report report = make_report({source, target, result, options});
-  EXPECT_THAT(report.html, Not(HasSubstr("id=\"baseline\"")));
-  EXPECT_THAT(report.html, Not(HasSubstr("id=\"clips\"")));
+  for (const char* id : {"shapes", "baseline"})
+    EXPECT_THAT(report.html, Not(HasSubstr("#" + std::string(id)))) << "nor a link to what is not there";
+  EXPECT_THAT(report.html, HasSubstr("<h2 id=\"weights\""));
   EXPECT_FALSE(nlohmann::json::parse(report.json).contains("thesis"));
   EXPECT_EQ(report.html, make_report({source, target, result, options}).html)
       << "the same input gives the same page";

@@ -22,7 +22,7 @@ std::string page_of(const ReportInput& input, const detail::Data& data) {
   std::optional<detail::Portrait> thesis;
   if (data.thesis) thesis.emplace(data.thesis->character, report.pairs.target, facing);
   const detail::PageInput page{input, data, source, target, thesis ? &*thesis : nullptr};
-  std::string body = detail::overview_section(page);
+  std::string body;
   const auto add = [&](const char* step, double fraction, std::string (*section)(const detail::PageInput&)) {
     report_progress(input.progress, step, fraction);
     body += section(page);
@@ -35,7 +35,8 @@ std::string page_of(const ReportInput& input, const detail::Data& data) {
   add("report: curves", 0.97, detail::clips_section);
   add("report: pieces", 0.98, detail::pieces_section);
   add("report: seconds", 0.99, detail::seconds_section);
-  return detail::document(input.source_name + " on " + input.target_name, body);
+  return detail::document(input.source_name + " on " + input.target_name,
+                          detail::overview_section(page, body) + body);
 }
 
 }  // namespace

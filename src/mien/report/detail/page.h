@@ -16,7 +16,8 @@ struct PageInput {
   const Portrait* thesis = nullptr;  ///< none: there is no baseline
 };
 
-std::string overview_section(const PageInput& page);
+/// Goes above `sections`, the markup of all others, and links to them.
+std::string overview_section(const PageInput& page, const std::string& sections);
 std::string surfaces_section(const PageInput& page);
 std::string maps_section(const PageInput& page);
 std::string shapes_section(const PageInput& page);

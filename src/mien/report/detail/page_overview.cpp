@@ -1,6 +1,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <string_view>
+#include <utility>
 
 #include "mien/report/detail/html.h"
 #include "mien/report/detail/page.h"
@@ -93,19 +96,32 @@ std::string warnings(const PageInput& page) {
   return text + "</ul>\n";
 }
 
+/// Links to the sections that there are.
+std::string navigation(const std::string& sections) {
+  static constexpr std::array<std::pair<std::string_view, std::string_view>, 8> names{
+      {{"surfaces", "Surfaces"},
+       {"maps", "Maps"},
+       {"shapes", "Shapes"},
+       {"baseline", "Baseline"},
+       {"weights", "Skin weights"},
+       {"clips", "Clips"},
+       {"pieces", "Pieces"},
+       {"seconds", "Seconds"}}};
+  std::string text = "<nav>";
+  for (const auto& [id, name] : names)
+    if (sections.find(fmt::format("<h2 id=\"{}\"", id)) != std::string::npos)
+      text += fmt::format("<a href=\"#{}\">{}</a>", id, name);
+  return text + "</nav>\n";
+}
+
 }  // namespace
 
-std::string overview_section(const PageInput& page) {
+std::string overview_section(const PageInput& page, const std::string& sections) {
   std::string text =
       "<h1>" + escaped(page.input.source_name) + " on " + escaped(page.input.target_name) + "</h1>\n";
   text += "<p class=\"soft\">The rig of the first on the second, written to " +
           escaped(page.input.output_name) + ".</p>\n";
-  text += "<nav><a href=\"#surfaces\">Surfaces</a><a href=\"#maps\">Maps</a><a href=\"#shapes\">Shapes</a>";
-  if (page.data.thesis) text += "<a href=\"#baseline\">Baseline</a>";
-  if (!page.data.joints.empty()) text += "<a href=\"#weights\">Skin weights</a>";
-  if (!page.data.clips.empty()) text += "<a href=\"#clips\">Clips</a>";
-  if (!page.input.result.report.pieces.empty()) text += "<a href=\"#pieces\">Pieces</a>";
-  text += "<a href=\"#seconds\">Seconds</a></nav>\n";
+  text += navigation(sections);
   return text + warnings(page) + facts(page) + decision(page.input.result.report.deltas);
 }
 
