@@ -295,6 +295,14 @@ bool ContactModel::closes_lid(std::size_t shape) const {
   return !state_->pairs[shape].empty() && speaks_of_lids(state_->names[shape]);
 }
 
+double ContactModel::lid_warp_share(std::size_t shape, const PointsD& moved) const {
+  if (!closes_lid(shape)) return 0;
+  std::vector<double> kept;
+  for (const ContactPair& pair : state_->pairs[shape])
+    kept.push_back(closing(state_->guide, moved, pair.a, pair.b) / pair.closed);
+  return std::clamp((0.8 - median(kept)) / 0.2, 0.0, 1.0);
+}
+
 void ContactModel::close_lids(std::size_t shape, PointsD& moved) const {
   if (!closes_lid(shape)) return;
   const State& s = *state_;

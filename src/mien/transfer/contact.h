@@ -52,6 +52,11 @@ class ContactModel {
   /// Whether the shape closes a lid: it has contacts and its name speaks of a blink, a lid or closing an eye.
   bool closes_lid(std::size_t shape) const;
 
+  /// How much of a lid's motion has to follow the warp instead of `moved` (#V x 3, displacements on the guide): 0 while it
+  /// closes at least 0.8 of what it closes on the source, 1 at 0.6. Eyes much larger than the source's need it: a lid
+  /// cannot cross them in the source's direction. 0 on other shapes.
+  double lid_warp_share(std::size_t shape, const PointsD& moved) const;
+
   /// Scales `moved` (#V x 3, displacements on the guide) by a smooth factor in [0.5, 2] so that the lid's gaps close at
   /// least as far as on the source and lids do not run through each other; directions stay. Minimises int h^2 + l^2 |grad h|^2 + 100 mean (closed' - closed)^2 with
   /// l = 0.12. Does nothing on other shapes. Cost: one sparse factorisation.

@@ -16,6 +16,7 @@
 #include "mien/transfer/contact.h"
 #include "mien/transfer/correspondence.h"
 #include "mien/transfer/detail/assemble_target.h"
+#include "mien/transfer/detail/eye_balls.h"
 #include "mien/transfer/detail/inner_pieces.h"
 #include "mien/transfer/detail/pool.h"
 #include "mien/transfer/register_surfaces.h"
@@ -321,15 +322,23 @@ void Run::carry_shapes() {
 
   result_.shapes.resize(count);
   const detail::PieceInput pieces = piece_input();
+  const std::vector<detail::Ball> balls =
+      options_.method == TransferMethod::thesis ? std::vector<detail::Ball>() : detail::eye_balls(pieces, plans_);
   parallel_for(count, 1, [&](std::size_t begin, std::size_t) {
     const std::size_t s = begin;
     const Shape& shape = source_.shapes[s];
     const PointsD pooled = pooled_delta(shape);
     const PointsD source_rows = pooled(source_surface_.vertices, Eigen::all);
     PointsD moved = carry_deltas(maps_, model, report_.deltas.warp_share, source_rows);
-    if (close_lids) contact.close_lids(s, moved);
+    if (close_lids) {
+      const double share = contact.lid_warp_share(s, moved);
+      if (share > 0)
+        moved = (1 - share) * moved + share * carry_deltas(maps_, DeltaModel::warp, 1, source_rows);
+      contact.close_lids(s, moved);
+    }
     const double exaggeration = exaggeration_of(shape.name);
-    const PointsD skin = exaggeration * PointsD((*carrier_)(moved));
+    PointsD skin = exaggeration * PointsD((*carrier_)(moved));
+    detail::keep_out_of_eyes(balls, target_surface_.surface.positions, skin);
     PointsD target = PointsD::Zero(target_pool_.positions.rows(), 3);
     for (std::size_t r = 0; r < target_surface_.vertices.size(); ++r)
       target.row(target_surface_.vertices[r]) = skin.row(static_cast<Eigen::Index>(r));
