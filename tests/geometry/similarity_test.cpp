@@ -34,6 +34,39 @@ TEST(fit_similarity, finds_the_one_that_was_applied) {
   EXPECT_TRUE(found.translation.isApprox(truth.translation, 1e-12));
 }
 
+TEST(fit_similarity, equal_weights_say_nothing) {
+  const PointsD from = random_points(10, 5), to = random_points(10, 6);
+  const Similarity plain = fit_similarity(from, to),
+                   weighted = fit_similarity(from, to, Eigen::VectorXd::Constant(10, 7.5));
+  EXPECT_NEAR(plain.scale, weighted.scale, 1e-12);
+  EXPECT_TRUE(plain.rotation.isApprox(weighted.rotation, 1e-12));
+  EXPECT_TRUE(plain.translation.isApprox(weighted.translation, 1e-12));
+}
+
+TEST(fit_similarity, a_weight_of_two_is_the_pair_twice) {
+  const PointsD from = random_points(8, 7), to = random_points(8, 8);
+  PointsD from_twice(9, 3), to_twice(9, 3);
+  from_twice << from, from.row(3);
+  to_twice << to, to.row(3);
+  Eigen::VectorXd weights = Eigen::VectorXd::Ones(8);
+  weights[3] = 2;
+  const Similarity plain = fit_similarity(from_twice, to_twice), weighted = fit_similarity(from, to, weights);
+  EXPECT_NEAR(plain.scale, weighted.scale, 1e-12);
+  EXPECT_TRUE(plain.rotation.isApprox(weighted.rotation, 1e-12));
+  EXPECT_TRUE(plain.translation.isApprox(weighted.translation, 1e-12));
+}
+
+TEST(fit_similarity, pairs_of_little_weight_hardly_count) {
+  const Similarity truth = some_similarity();
+  const PointsD from = random_points(10, 9);
+  PointsD to = truth(from);
+  to.row(0) += Eigen::RowVector3d(5, -5, 5);
+  Eigen::VectorXd weights = Eigen::VectorXd::Ones(10);
+  weights[0] = 1e-9;
+  EXPECT_NEAR(fit_similarity(from, to, weights).scale, truth.scale, 1e-6);
+  EXPECT_GT(std::abs(fit_similarity(from, to).scale - truth.scale), 1e-2);
+}
+
 TEST(fit_similarity, never_mirrors) {
   const PointsD points = random_points(10, 3);
   PointsD mirrored = points;

@@ -26,14 +26,14 @@ std::string invalid_input_of(Call&& call) {
 }
 
 /// The first part, its UV seams joined.
-struct Skin {
+struct FaceSkin {
   mien::Surface surface;
   std::vector<int> row_of;  ///< per vertex of the part
 };
-inline Skin skin_of(const Character& character) {
+inline FaceSkin skin_of(const Character& character) {
   const Weld weld = weld_seams(character, 0);
   const Mesh& mesh = character.parts[0].mesh;
-  Skin skin;
+  FaceSkin skin;
   skin.surface.positions = mesh.positions(weld.representative, Eigen::all).cast<double>();
   skin.surface.triangles = triangulate(weld_faces(mesh.faces, weld));
   skin.row_of = weld.of;
