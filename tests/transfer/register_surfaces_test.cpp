@@ -96,12 +96,12 @@ TEST(register_surfaces, heads_commute_with_similarities_of_either_side) {
   const FaceSkin human = skin_of(made("human")), cartoon = skin_of(made("cartoon"));
   const PointsD from = landmark_positions(made("human")), to = landmark_positions(made("cartoon"));
   const Registration plain = register_surfaces(human.surface, cartoon.surface, from, to);
-  // Rays for openness turn with the head but not about the normals, so a turned head differs by a ray here and there.
+  // Powers of two change no digit. Others do, and rays for openness do not turn about the normals: a ray here and there
+  // meets something else, which moves a few vertices.
   for (const Similarity& turn :
-       {Similarity{64, Eigen::Matrix3d::Identity(), {0, 0, 0}},
-        Similarity{1, Eigen::Matrix3d::Identity(), {1, 2, 3}}, some_similarity(60)}) {
-    const bool turned = !turn.rotation.isIdentity();
-    const double worst_off = turned ? 0.05 : 0.01, mean_off = turned ? 1e-3 : 1e-4;
+       {Similarity{64, Eigen::Matrix3d::Identity(), {0, 0, 0}}, some_similarity(60)}) {
+    const bool rounded = !turn.rotation.isIdentity();
+    const double worst_off = rounded ? 0.05 : 1e-9, mean_off = rounded ? 1e-3 : 1e-9;
     const Registration source = register_surfaces({turn(human.surface.positions), human.surface.triangles},
                                                   cartoon.surface, turn(from), to);
     const auto [source_worst, source_mean] = apart(source.guide, plain.guide);
