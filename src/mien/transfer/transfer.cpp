@@ -161,6 +161,7 @@ void Run::find_guide() {
   maps_.similarity = registration_.similarity;
   maps_.aligned = registration_.similarity(maps_.positions);
   maps_.landmarks = landmark_spline_.get();
+  if (options_.method == TransferMethod::thesis && options_.deltas != DeltaModel::warp) return;
   dense_ = std::make_unique<ThinPlateSpline>(
       dense_spline(maps_.aligned, registration_.guide, registration_.similarity(from), to));
   maps_.dense = dense_.get();
@@ -191,7 +192,7 @@ void Run::find_places() {
   for (std::size_t r = 0; r < source_surface_.vertices.size(); ++r)
     warped_source_.row(source_surface_.vertices[r]) = registration_.guide.row(static_cast<Eigen::Index>(r));
   piece_motions_ = detail::piece_motions(
-      source_pool_, source_.shapes.size(), [&](std::size_t s) { return pooled_delta(source_.shapes[s]); },
+      source_pool_, source_skin_, source_.shapes.size(), [&](std::size_t s) { return pooled_delta(source_.shapes[s]); },
       source_weights_, registration_.unit / registration_.similarity.scale);
   plans_ = detail::plan_pieces(piece_input());
   for (const detail::PiecePlan& plan : plans_)

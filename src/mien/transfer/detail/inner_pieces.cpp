@@ -279,7 +279,7 @@ PieceKind kind_from_name(const std::string& name) {
   return PieceKind::other;
 }
 
-std::vector<PieceMotion> piece_motions(const Pool& source, std::size_t shapes,
+std::vector<PieceMotion> piece_motions(const Pool& source, const std::vector<char>& skin, std::size_t shapes,
                                        const std::function<PointsD(std::size_t)>& deltas,
                                        const WeightMatrix& weights, double unit) {
   const std::size_t count = at(source.piece_count);
@@ -293,6 +293,7 @@ std::vector<PieceMotion> piece_motions(const Pool& source, std::size_t shapes,
   for (std::size_t s = 0; s < shapes; ++s) {
     const PointsD delta = deltas(s);
     for (std::size_t p = 0; p < count; ++p) {
+      if (skin[p]) continue;
       const PointsD own = rows(delta, members[p]);
       if (!(own.cwiseAbs().maxCoeff() > 0)) continue;
       const RigidMotion rigid = fit_rigid(rows(source.positions, members[p]), own);
@@ -306,7 +307,7 @@ std::vector<PieceMotion> piece_motions(const Pool& source, std::size_t shapes,
       for (WeightMatrix::InnerIterator entry(weights, v); entry; ++entry)
         motions[p].signature[width + entry.col()] +=
             unit * entry.value() / static_cast<double>(members[p].size());
-    motions[p].bend = moved[p] > 0 ? std::sqrt(bent[p] / moved[p]) : 0;
+    motions[p].bend = skin[p] ? 1 : moved[p] > 0 ? std::sqrt(bent[p] / moved[p]) : 0;
   }
   return motions;
 }

@@ -45,8 +45,9 @@ struct PieceMotion {
   double bend = 0;  ///< what of its motion is not rigid: root of squares over root of squares of the motion
 };
 
+/// Of the pieces that are not skin; skin counts as bending.
 ///   deltas(s)  pooled source vertices x 3 of shape s; weights: pooled source vertices x #J, or empty
-std::vector<PieceMotion> piece_motions(const Pool& source, std::size_t shapes,
+std::vector<PieceMotion> piece_motions(const Pool& source, const std::vector<char>& skin, std::size_t shapes,
                                        const std::function<PointsD(std::size_t)>& deltas,
                                        const WeightMatrix& weights, double unit);
 
