@@ -13,12 +13,6 @@ function(mien_room name)
     $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/src> $<INSTALL_INTERFACE:include>)
   target_compile_features(mien_${name} PUBLIC cxx_std_20)
   target_link_libraries(mien_${name} PUBLIC Eigen3::Eigen)
-  # Eigen's alignment is part of the binary interface: held at what every x86-64 has, so that a library built for this
-  # machine's vectors and a program built without them agree.
-  target_compile_definitions(mien_${name} PUBLIC EIGEN_MAX_ALIGN_BYTES=16)
-  if(MIEN_NATIVE)
-    target_compile_options(mien_${name} PRIVATE -march=native)
-  endif()
   foreach(used IN LISTS room_USES)
     if(TARGET mien_${used})
       target_link_libraries(mien_${name} PUBLIC mien_${used})

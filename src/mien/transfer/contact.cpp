@@ -9,6 +9,7 @@
 #include <cctype>
 #include <cmath>
 #include <numbers>
+#include <span>
 #include <unordered_map>
 
 #include "mien/core/parallel.h"
@@ -81,8 +82,7 @@ double closing(const PointsD& positions, const PointsD& deltas, int a, int b) {
 /// The affine map of a Gaussian neighbourhood, pulled towards its uniform scale by `ridge`.
 class LocalAffine {
  public:
-  LocalAffine(const PointsD& from, const PointsD& to) {
-    const auto samples = farthest_points(from, 1500);
+  LocalAffine(const PointsD& from, const PointsD& to, const std::vector<int>& samples) {
     from_ = from(samples, Eigen::all);
     to_ = to(samples, Eigen::all);
   }
@@ -234,7 +234,7 @@ DeltaDecision ContactModel::decide(DeltaModel wanted) const {
     decision.reason = "asked for by name";
     return decision;
   }
-  const LocalAffine affine(s.maps.aligned, s.guide);
+  const LocalAffine affine(s.maps.aligned, s.guide, s.maps.samples);
   const double near = jacobian_radius * s.unit;
   Miss raw, jacobian;
   for (std::size_t shape = 0; shape < s.pairs.size(); ++shape) {
@@ -261,7 +261,7 @@ DeltaDecision ContactModel::decide(DeltaModel wanted) const {
   }
 
   double weight = 0, sum = 0, squares = 0;
-  for (const int v : farthest_points(s.guide, 300)) {
+  for (const int v : std::span(s.maps.samples).first(std::min<std::size_t>(300, s.maps.samples.size()))) {
     const Eigen::Matrix3d a = affine(row(s.maps.aligned, v), stretch_radius * s.unit, 0.03);
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> squared(a.transpose() * a, Eigen::EigenvaluesOnly);
     const Eigen::Array3d stretch = squared.eigenvalues().array().max(1e-12).log() / 2;
@@ -306,13 +306,6 @@ double ContactModel::lid_warp_share(std::size_t shape, const PointsD& moved) con
 void ContactModel::close_lids(std::size_t shape, PointsD& moved) const {
   if (!closes_lid(shape)) return;
   const State& s = *state_;
-  const double radius = lid_radius * s.unit, area = std::numbers::pi * radius * radius;
-  SparseMatrix system = radius * radius * cotangent_laplacian(s.guide, s.source.triangles);
-  const Eigen::VectorXd masses = vertex_areas(s.guide, s.source.triangles);
-  for (Eigen::Index v = 0; v < masses.size(); ++v)
-    system.coeffRef(v, v) += std::max(masses[v], 1e-6 * masses.mean());
-  system /= area;
-
   struct Row {
     int a, b;
     double qa, qb, goal;
@@ -329,7 +322,28 @@ void ContactModel::close_lids(std::size_t shape, PointsD& moved) const {
     const double goal = std::clamp(now, pair.closed, std::max(pair.closed, 1.0));
     rows.push_back({pair.a, pair.b, qa, qb, goal - now});
   }
-  if (rows.empty()) return;
+  if (rows.empty() || std::all_of(rows.begin(), rows.end(), [](const Row& r) { return std::abs(r.goal) < 0.02; }))
+    return;
+
+  // The factor is one far from the lid: the system is set up on the surface around the contacts alone.
+  const double radius = lid_radius * s.unit, area = std::numbers::pi * radius * radius;
+  const Surface around = [&] {
+    Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+    for (const Row& r : rows) middle += row(s.guide, r.a) / static_cast<double>(rows.size());
+    Surface piece{s.guide, Triangles(s.source.triangles.rows(), 3)};
+    Eigen::Index count = 0;
+    for (Eigen::Index t = 0; t < s.source.triangles.rows(); ++t)
+      if ((row(s.guide, s.source.triangles(t, 0)) - middle).norm() < 4 * radius)
+        piece.triangles.row(count++) = s.source.triangles.row(t);
+    piece.triangles.conservativeResize(count, 3);
+    return piece;
+  }();
+  SparseMatrix system = radius * radius * cotangent_laplacian(around.positions, around.triangles);
+  const Eigen::VectorXd masses = vertex_areas(around.positions, around.triangles);
+  for (Eigen::Index v = 0; v < masses.size(); ++v)
+    system.coeffRef(v, v) += std::max(masses[v], 1e-6 * masses.mean());
+  system /= area;
+
   const double weight = 100.0 / static_cast<double>(rows.size());
   Eigen::VectorXd right = Eigen::VectorXd::Zero(masses.size());
   std::vector<Eigen::Triplet<double>> entries;

@@ -110,7 +110,7 @@ std::vector<int> farthest_points(const PointsD& points, int count) {
 }
 
 ThinPlateSpline dense_spline(const PointsD& aligned, const PointsD& guide, const PointsD& landmarks_from,
-                             const PointsD& landmarks_to, int samples) {
+                             const PointsD& landmarks_to, std::span<const int> samples) {
   const double diagonal = (aligned.colwise().maxCoeff() - aligned.colwise().minCoeff()).norm();
   std::vector<Eigen::RowVector3d> from, to;
   const auto add = [&](const Eigen::RowVector3d& a, const Eigen::RowVector3d& b) {
@@ -122,7 +122,7 @@ ThinPlateSpline dense_spline(const PointsD& aligned, const PointsD& guide, const
     to.push_back(b);
   };
   for (Eigen::Index i = 0; i < landmarks_from.rows(); ++i) add(landmarks_from.row(i), landmarks_to.row(i));
-  for (const int v : farthest_points(aligned, samples)) add(aligned.row(v), guide.row(v));
+  for (const int v : samples) add(aligned.row(v), guide.row(v));
   PointsD a(static_cast<Eigen::Index>(from.size()), 3), b(a.rows(), 3);
   for (Eigen::Index i = 0; i < a.rows(); ++i) {
     a.row(i) = from[static_cast<std::size_t>(i)];

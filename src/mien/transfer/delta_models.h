@@ -3,6 +3,7 @@
 /// shapes, joint-driven faces and cartoons, so there are several and a rule that chooses.
 
 #include <Eigen/Core>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -31,16 +32,17 @@ std::string_view name_of(DeltaModel model);
 Eigen::VectorXd local_scale(const PointsD& aligned, const PointsD& guide, const Triangles& triangles,
                             double radius);
 
-/// A spline from the aligned source to the guide through the landmarks and `samples` farthest-point vertices.
+/// A spline from the aligned source to the guide through the landmarks and the vertices `samples` (500 farthest points).
 ///   landmarks_from, landmarks_to  #L x 3 in the same frames; diagonal smoothing 1e-3 of the box
 ThinPlateSpline dense_spline(const PointsD& aligned, const PointsD& guide, const PointsD& landmarks_from,
-                             const PointsD& landmarks_to, int samples = 500);
+                             const PointsD& landmarks_to, std::span<const int> samples);
 
 /// The skin and the maps that displacements are carried by.
 struct DeltaMaps {
   PointsD positions;  ///< #V x 3 source skin, source model space
   PointsD aligned;    ///< #V x 3 after the similarity
   Similarity similarity;
+  std::vector<int> samples;          ///< farthest points of `aligned`, in order: the first k are a choice of k
   Eigen::VectorXd scale;                       ///< #V: local_scale; used by local
   const ThinPlateSpline* dense = nullptr;      ///< aligned -> target; used by warp
   const ThinPlateSpline* landmarks = nullptr;  ///< source -> target; used by thesis

@@ -81,9 +81,11 @@ struct Fitting {
   std::vector<detail::CurvePiece> source_curves, target_curves;
   std::vector<SurfaceQuery::Hit> landmarks;
   Eigen::VectorXd masses;
+  std::vector<char> boundary;
 
   void find_features(const PointsD& source_landmarks) {
     masses = normalised_areas(source);
+    boundary = boundary_vertices(static_cast<std::size_t>(source.positions.rows()), source.triangles);
     const SurfaceQuery query(source.positions, source.triangles);
     for (Eigen::Index i = 0; i < source_landmarks.rows(); ++i)
       landmarks.push_back(query.closest(source_landmarks.row(i).transpose()));
@@ -95,7 +97,7 @@ struct Fitting {
 
   /// All that pulls at the source when it lies at `positions`.
   std::vector<detail::Wish> wishes(const PointsD& positions, const Stage& stage, double reach) const {
-    const detail::MatchSurface moving(positions, source.triangles, result.source_openness, masses);
+    const detail::MatchSurface moving(positions, source.triangles, result.source_openness, masses, boundary);
     const bool coarse = stage.stiffness >= curves_until;
     detail::MatchOptions match;
     match.least_reach = reach;
@@ -114,7 +116,7 @@ struct Fitting {
 
   /// Moves what lies far from all landmarks by quadratic maps of the whole skin.
   void fit_whole(PointsD& positions) const {
-    constexpr int rounds = 6;
+    constexpr int rounds = 4;
     constexpr double ridge = 1e-4, reach = 0.3, near = 0.15, far = 0.6;
     const Stage whole{schedule[0].stiffness, 1, 0.1};
     for (int round = 0; round < rounds; ++round) {
@@ -145,9 +147,10 @@ Registration register_surfaces(const Surface& source, const Surface& target, con
   result.source_openness = openness(source.positions, source.triangles);
   result.target_openness = openness(target.positions, target.triangles);
   const detail::MatchSurface fixed(fixed_points, target.triangles, result.target_openness,
-                                   normalised_areas(target));
+                                   normalised_areas(target),
+                                   boundary_vertices(static_cast<std::size_t>(fixed_points.rows()), target.triangles));
 
-  Fitting fitting{source, {fixed_points, target.triangles}, fixed, goals, result, options, {}, {}, {}};
+  Fitting fitting{source, {fixed_points, target.triangles}, fixed, goals, result, options, {}, {}, {}, {}, {}};
   fitting.find_features(source_landmarks);
   const ThinPlateSpline spline(source_landmarks, goals, {options.smoothing, -1});
   PointsD start = spline(source.positions);

@@ -34,8 +34,10 @@ constexpr double least_delta = 1e-5;
 /// Radius over which areas are compared for the local scale, relative to the face's size.
 constexpr double scale_radius = 0.2;
 
-/// Joints follow this many points of the guide, each with a blur, relative to the face's size.
-constexpr int joint_samples = 800;
+/// Points of the guide that maps of space go through: the dense spline through the first, joints through all.
+constexpr std::size_t spline_samples = 500;
+constexpr int most_samples = 1000;
+/// The blur of each point on the joints, relative to the face's size.
 constexpr double joint_softness = 0.03;
 
 /// One transfer on its way: each step reads what the steps before left and adds its own.
@@ -162,8 +164,10 @@ void Run::find_guide() {
   maps_.aligned = registration_.similarity(maps_.positions);
   maps_.landmarks = landmark_spline_.get();
   if (options_.method == TransferMethod::thesis && options_.deltas != DeltaModel::warp) return;
+  maps_.samples = farthest_points(maps_.aligned, most_samples);
   dense_ = std::make_unique<ThinPlateSpline>(
-      dense_spline(maps_.aligned, registration_.guide, registration_.similarity(from), to));
+      dense_spline(maps_.aligned, registration_.guide, registration_.similarity(from), to,
+                   std::span(maps_.samples).first(std::min(maps_.samples.size(), spline_samples))));
   maps_.dense = dense_.get();
 }
 
@@ -255,7 +259,7 @@ void Run::place_joints() {
       return std::cbrt(std::abs(landmark_spline_->jacobian(x).determinant()));
     };
   } else {
-    const auto samples = farthest_points(maps_.aligned, joint_samples);
+    const std::vector<int>& samples = maps_.samples;
     const detail::PiecePoints inner = detail::piece_points(piece_input(), plans_);
     PointsD from(static_cast<Eigen::Index>(samples.size()) + inner.aligned.rows(), 3), to(from.rows(), 3);
     from << maps_.aligned(samples, Eigen::all), inner.aligned;

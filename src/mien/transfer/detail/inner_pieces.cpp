@@ -10,6 +10,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <memory>
 
 #include "mien/geometry/surface_query.h"
 
@@ -89,21 +90,43 @@ std::vector<char> donor_pieces(const PieceInput& in, PieceKind kind, const std::
   return found_same ? same : any;
 }
 
+/// Donor pieces ready to be asked; many target pieces ask the same.
+struct DonorSurface {
+  PoolSurface pieces;
+  std::unique_ptr<SurfaceQuery> query;
+};
+class DonorSurfaces {
+ public:
+  explicit DonorSurfaces(const PieceInput& in) : in_(in) {}
+  const DonorSurface& of(const std::vector<char>& donors) {
+    DonorSurface& surface = known_[donors];
+    if (!surface.query) {
+      surface.pieces = select_pieces(in_.source, donors);
+      if (surface.pieces.surface.triangles.rows() > 0)
+        surface.query = std::make_unique<SurfaceQuery>(rows(in_.warped_source, surface.pieces.vertices),
+                                                       surface.pieces.surface.triangles);
+    }
+    return surface;
+  }
+
+ private:
+  const PieceInput& in_;
+  std::map<std::vector<char>, DonorSurface> known_;
+};
+
 /// The places on the donor pieces closest to the piece's vertices; the number of them on each donor.
-std::map<int, int> closest_on(const PieceInput& in, const std::vector<char>& donors, PiecePlan& plan,
+std::map<int, int> closest_on(const PieceInput& in, const DonorSurface& donors, PiecePlan& plan,
                               double& median_distance) {
   std::map<int, int> votes;
-  const PoolSurface source = select_pieces(in.source, donors);
   plan.triangle.clear();
   plan.barycentric.clear();
   median_distance = std::numeric_limits<double>::infinity();
-  if (source.surface.triangles.rows() == 0) return votes;
-  const SurfaceQuery query(rows(in.warped_source, source.vertices), source.surface.triangles);
+  if (!donors.query) return votes;
   std::vector<double> distance;
   for (const int v : plan.vertices) {
-    const auto hit = query.closest(in.target.positions.row(v).transpose());
+    const auto hit = donors.query->closest(in.target.positions.row(v).transpose());
     distance.push_back(hit.distance);
-    plan.triangle.push_back(source.triangles[at(hit.triangle)]);
+    plan.triangle.push_back(donors.pieces.triangles[at(hit.triangle)]);
     plan.barycentric.push_back(hit.barycentric);
     ++votes[in.source.piece[at(in.source.triangles(plan.triangle.back(), 0))]];
   }
@@ -150,12 +173,12 @@ std::vector<char> choose_group(const PieceInput& in, const std::map<int, int>& v
 
 /// Where the piece's donors are, or false when nothing of the source lies near.
 bool find_donors(const PieceInput& in, const std::vector<char>& donors, const std::vector<PieceKind>& kinds,
-                 PiecePlan& plan) {
+                 DonorSurfaces& surfaces, PiecePlan& plan) {
   double distance = 0;
-  const auto votes = closest_on(in, donors, plan, distance);
+  const auto votes = closest_on(in, surfaces.of(donors), plan, distance);
   if (votes.empty() || distance > 0.15 * in.unit) return false;
   const auto group = choose_group(in, votes, plan, row_from_name(in.target.piece_name[at(plan.piece)]));
-  closest_on(in, group, plan, distance);
+  closest_on(in, surfaces.of(group), plan, distance);
   plan.same_kind = plan.kind != PieceKind::other;
   for (std::size_t p = 0; p < group.size(); ++p) {
     if (!group[p]) continue;
@@ -318,6 +341,7 @@ std::vector<PiecePlan> plan_pieces(const PieceInput& in) {
     source_kinds.push_back(in.source_skin[at(p)] ? PieceKind::skin
                                                  : kind_of(in.source, p, in.unit / in.similarity.scale));
   const SurfaceQuery skin(in.target_surface.surface.positions, in.target_surface.surface.triangles);
+  DonorSurfaces surfaces(in);
   std::vector<PiecePlan> plans;
   for (int p = 0; p < in.target.piece_count; ++p) {
     if (in.target_skin[at(p)]) continue;
@@ -327,7 +351,7 @@ std::vector<PiecePlan> plan_pieces(const PieceInput& in) {
     plan.vertices = vertices_of(in.target, p);
     plan.growth = in.similarity.scale;
     const auto donors = donor_pieces(in, plan.kind, in.target.piece_name[at(p)], source_kinds);
-    if (plan.kind != PieceKind::lash && find_donors(in, donors, source_kinds, plan)) {
+    if (plan.kind != PieceKind::lash && find_donors(in, donors, source_kinds, surfaces, plan)) {
       plan.way = PiecePlan::Way::donors;
     } else {
       const SkinFit fit = find_skin(in, skin, plan);

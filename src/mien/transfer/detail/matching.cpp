@@ -71,13 +71,13 @@ Eigen::Vector3d smooth_normal(const MatchSurface& surface, const SurfaceQuery::H
 }  // namespace
 
 MatchSurface::MatchSurface(const PointsD& p, const Triangles& t, const Eigen::VectorXd& o,
-                           const Eigen::VectorXd& m)
+                           const Eigen::VectorXd& m, const std::vector<char>& b)
     : positions(p),
       normals(vertex_normals(p, t)),
       triangles(t),
       openness(o),
       masses(m),
-      boundary(boundary_vertices(static_cast<std::size_t>(p.rows()), t)),
+      boundary(b),
       query(p, t) {}
 
 Eigen::Vector3d MatchSurface::triangle_normal(int triangle) const {

@@ -18,7 +18,7 @@ struct MatchSurface {
   SurfaceQuery query;
 
   MatchSurface(const PointsD& positions, const Triangles& triangles, const Eigen::VectorXd& openness,
-               const Eigen::VectorXd& masses);
+               const Eigen::VectorXd& masses, const std::vector<char>& boundary);
   Eigen::Vector3d triangle_normal(int triangle) const;
 };
 
