@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <limits>
 
 namespace mien {
 namespace {
@@ -12,19 +13,8 @@ double closest_on_segment(const Eigen::Vector3d& p, const Eigen::Vector3d& a, co
   return squared > 0 ? std::clamp((p - a).dot(ab) / squared, 0.0, 1.0) : 0.0;
 }
 
-}  // namespace
-
-TrianglePoint closest_point_on_triangle(const Eigen::Vector3d& p, const Eigen::Vector3d& a,
-                                        const Eigen::Vector3d& b, const Eigen::Vector3d& c) {
-  // Inside the triangle's prism the foot on the plane is closest; otherwise one of the edges holds the point.
-  const Eigen::Vector3d ab = b - a, ac = c - a, normal = ab.cross(ac);
-  const double squared_area = normal.squaredNorm();
-  if (squared_area > 0) {
-    const Eigen::Vector3d ap = p - a;
-    const double v = ap.cross(ac).dot(normal) / squared_area;
-    const double w = ab.cross(ap).dot(normal) / squared_area;
-    if (v >= 0 && w >= 0 && v + w <= 1) return {{1 - v - w, v, w}, a + v * ab + w * ac};
-  }
+TrianglePoint closest_on_edges(const Eigen::Vector3d& p, const Eigen::Vector3d& a, const Eigen::Vector3d& b,
+                               const Eigen::Vector3d& c) {
   const Eigen::Vector3d* corner[3] = {&a, &b, &c};
   TrianglePoint best{};
   double best_distance = std::numeric_limits<double>::infinity();
@@ -42,6 +32,29 @@ TrianglePoint closest_point_on_triangle(const Eigen::Vector3d& p, const Eigen::V
     }
   }
   return best;
+}
+
+}  // namespace
+
+TrianglePoint closest_point_on_triangle(const Eigen::Vector3d& p, const Eigen::Vector3d& a,
+                                        const Eigen::Vector3d& b, const Eigen::Vector3d& c) {
+  // The signs of six dot products say in which corner's, edge's or face's Voronoi region the point lies (Ericson 2005,
+  // 5.1.5). Divisions by zero happen on degenerate triangles alone, which the last branch takes.
+  const Eigen::Vector3d ab = b - a, ac = c - a, ap = p - a;
+  const double d1 = ab.dot(ap), d2 = ac.dot(ap);
+  if (d1 <= 0 && d2 <= 0) return {{1, 0, 0}, a};
+  const Eigen::Vector3d bp = p - b;
+  const double d3 = ab.dot(bp), d4 = ac.dot(bp);
+  if (d3 >= 0 && d4 <= d3) return {{0, 1, 0}, b};
+  const Eigen::Vector3d cp = p - c;
+  const double d5 = ab.dot(cp), d6 = ac.dot(cp);
+  if (d6 >= 0 && d5 <= d6) return {{0, 0, 1}, c};
+  const double va = d3 * d6 - d5 * d4, vb = d5 * d2 - d1 * d6, vc = d1 * d4 - d3 * d2;
+  if (va > 0 && vb > 0 && vc > 0) {
+    const double scale = 1 / (va + vb + vc), v = vb * scale, w = vc * scale;
+    return {{1 - v - w, v, w}, a + v * ab + w * ac};
+  }
+  return closest_on_edges(p, a, b, c);
 }
 
 Eigen::Vector3d barycentric_on_plane(const Eigen::Vector3d& p, const Eigen::Vector3d& a,

@@ -3,8 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <map>
-#include <utility>
+#include <tuple>
 
 #include "mien/core/parallel.h"
 #include "mien/geometry/surface_query.h"
@@ -28,21 +27,33 @@ constexpr std::size_t most_triangles = 400;
 /// #T x 3: the triangle across edge (k, k + 1) in the same chart, -1 at a seam or border.
 std::vector<std::array<int, 3>> chart_neighbours(const UvSource& source) {
   std::vector<std::array<int, 3>> neighbours(source.uvs.size(), {-1, -1, -1});
-  std::map<std::pair<int, int>, std::pair<int, int>> open;  // directed edge -> (triangle, k)
-  for (int t = 0; t < static_cast<int>(source.uvs.size()); ++t) {
-    if (!source.has_uv[at(t)]) continue;
-    for (int k = 0; k < 3; ++k) {
-      const int a = source.triangles(t, k), b = source.triangles(t, (k + 1) % 3);
-      open[{a, b}] = {t, k};
-      const auto other = open.find({b, a});
-      if (other == open.end()) continue;
-      const auto [s, j] = other->second;
-      const bool joined = (source.uvs[at(t)][at(k)] - source.uvs[at(s)][at((j + 1) % 3)]).norm() < same_uv &&
-                          (source.uvs[at(t)][at((k + 1) % 3)] - source.uvs[at(s)][at(j)]).norm() < same_uv;
-      if (!joined) continue;
-      neighbours[at(t)][at(k)] = s;
-      neighbours[at(s)][at(j)] = t;
+  struct Edge {
+    int low, high, triangle, k;
+    bool operator<(const Edge& other) const {
+      return std::tie(low, high, triangle, k) < std::tie(other.low, other.high, other.triangle, other.k);
     }
+  };
+  std::vector<Edge> edges;
+  edges.reserve(3 * source.uvs.size());
+  for (int t = 0; t < static_cast<int>(source.uvs.size()); ++t)
+    for (int k = 0; k < 3 && source.has_uv[at(t)]; ++k) {
+      const int a = source.triangles(t, k), b = source.triangles(t, (k + 1) % 3);
+      edges.push_back({std::min(a, b), std::max(a, b), t, k});
+    }
+  std::sort(edges.begin(), edges.end());
+  // The UV of the edge's lower or higher vertex in its triangle.
+  const auto uv = [&](const Edge& edge, int vertex) {
+    const bool first = source.triangles(edge.triangle, edge.k) == vertex;
+    return source.uvs[at(edge.triangle)][at(first ? edge.k : (edge.k + 1) % 3)];
+  };
+  for (std::size_t e = 0; e + 1 < edges.size(); ++e) {
+    const Edge &one = edges[e], &two = edges[e + 1];
+    const bool same_edge = one.low == two.low && one.high == two.high;
+    if (!same_edge || (uv(one, one.low) - uv(two, one.low)).norm() >= same_uv ||
+        (uv(one, one.high) - uv(two, one.high)).norm() >= same_uv)
+      continue;
+    neighbours[at(one.triangle)][at(one.k)] = two.triangle;
+    neighbours[at(two.triangle)][at(two.k)] = one.triangle;
   }
   return neighbours;
 }

@@ -1,5 +1,7 @@
 #include "mien/transfer/detail/displacement_solver.h"
 
+#include <omp.h>
+
 #include <Eigen/CholmodSupport>
 #include <algorithm>
 #include <cmath>
@@ -12,6 +14,19 @@ namespace {
 constexpr double bending_unit = 1e-6;
 constexpr double tolerance = 1e-3;
 constexpr int most_steps = 30;
+
+/// CHOLMOD asks for four threads whatever the machine has; they spin more than they work, and sums must not depend on
+/// them. Within this scope OpenMP stays on the calling thread.
+class OneThread {
+ public:
+  OneThread() { omp_set_max_active_levels(0); }
+  ~OneThread() { omp_set_max_active_levels(levels_); }
+  OneThread(const OneThread&) = delete;
+  OneThread& operator=(const OneThread&) = delete;
+
+ private:
+  int levels_ = omp_get_max_active_levels();
+};
 
 /// Adds `value` to an entry that the matrix already has.
 void add_to_entry(SparseMatrix& matrix, int row, int column, double value) {
@@ -80,7 +95,10 @@ PointsD DisplacementSolver::solve(double stiffness, const std::vector<Wish>& wis
         const double value = mean_weight(wish) * wish.weights[i] * wish.weights[j];
         if (value != 0) add_to_entry(scalar, wish.vertices[i], wish.vertices[j], value);
       }
-  factor_->cholesky.factorize(scalar);
+  {
+    const OneThread only;
+    factor_->cholesky.factorize(scalar);
+  }
   if (factor_->cholesky.info() != Eigen::Success)
     throw invalid_input("registration", "the surface's stiffness matrix is singular",
                         "a mesh without degenerate or duplicate triangles");
