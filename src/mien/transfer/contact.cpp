@@ -322,7 +322,8 @@ void ContactModel::close_lids(std::size_t shape, PointsD& moved) const {
     const double goal = std::clamp(now, pair.closed, std::max(pair.closed, 1.0));
     rows.push_back({pair.a, pair.b, qa, qb, goal - now});
   }
-  if (rows.empty() || std::all_of(rows.begin(), rows.end(), [](const Row& r) { return std::abs(r.goal) < 0.02; }))
+  if (rows.empty() ||
+      std::all_of(rows.begin(), rows.end(), [](const Row& r) { return std::abs(r.goal) < 0.02; }))
     return;
 
   // The factor is one far from the lid: the system is set up on the surface around the contacts alone.

@@ -42,8 +42,8 @@ struct DeltaMaps {
   PointsD positions;  ///< #V x 3 source skin, source model space
   PointsD aligned;    ///< #V x 3 after the similarity
   Similarity similarity;
-  std::vector<int> samples;          ///< farthest points of `aligned`, in order: the first k are a choice of k
-  Eigen::VectorXd scale;                       ///< #V: local_scale; used by local
+  std::vector<int> samples;  ///< farthest points of `aligned`, in order: the first k are a choice of k
+  Eigen::VectorXd scale;     ///< #V: local_scale; used by local
   const ThinPlateSpline* dense = nullptr;      ///< aligned -> target; used by warp
   const ThinPlateSpline* landmarks = nullptr;  ///< source -> target; used by thesis
 };

@@ -28,13 +28,14 @@ struct Stage {
 constexpr double curve_weight = 0.033, curves_until = 0.06;
 /// A border as long as a neck's, in face sizes; eyes' and mouths' are shorter.
 constexpr double least_border = 1.0;
+/// Rays a vertex: twice as many place the lid and lip lines no better.
+constexpr int openness_rays = 32;
 /// While the surface is stiff this many vertices of either side say as much as all.
 constexpr int coarse_vertices = 6000;
 
 /// From the whole face's proportions down to features of a few edges.
-constexpr std::array<Stage, 11> schedule{{{3, .5, .35},
-                                          {1, .5, .35},
-                                          {.3, .5, .35},
+constexpr std::array<Stage, 10> schedule{{{3, .5, .35},
+                                          {.5, .5, .35},
                                           {.1, .5, .35},
                                           {.03, .15, .35},
                                           {.01, .05, .35},
@@ -144,13 +145,14 @@ Registration register_surfaces(const Surface& source, const Surface& target, con
   const auto normalise = [&](const PointsD& p) { return PointsD((p.rowwise() - centre) / result.unit); };
   const PointsD fixed_points = normalise(target.positions), goals = normalise(target_landmarks);
 
-  result.source_openness = openness(source.positions, source.triangles);
-  result.target_openness = openness(target.positions, target.triangles);
-  const detail::MatchSurface fixed(fixed_points, target.triangles, result.target_openness,
-                                   normalised_areas(target),
-                                   boundary_vertices(static_cast<std::size_t>(fixed_points.rows()), target.triangles));
+  result.source_openness = openness(source.positions, source.triangles, openness_rays);
+  result.target_openness = openness(target.positions, target.triangles, openness_rays);
+  const detail::MatchSurface fixed(
+      fixed_points, target.triangles, result.target_openness, normalised_areas(target),
+      boundary_vertices(static_cast<std::size_t>(fixed_points.rows()), target.triangles));
 
-  Fitting fitting{source, {fixed_points, target.triangles}, fixed, goals, result, options, {}, {}, {}, {}, {}};
+  Fitting fitting{source, {fixed_points, target.triangles}, fixed, goals, result, options, {}, {}, {}, {},
+                  {}};
   fitting.find_features(source_landmarks);
   const ThinPlateSpline spline(source_landmarks, goals, {options.smoothing, -1});
   PointsD start = spline(source.positions);

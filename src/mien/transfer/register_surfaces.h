@@ -35,7 +35,7 @@ struct Registration {
 };
 
 /// Non-rigid registration by a bi-Laplacian prior on the displacement from the spline's start, its stiffness falling
-/// over eleven stages; closest points both ways with gates on normal, distance, border and openness; point-to-plane
+/// over ten stages; closest points both ways with gates on normal, distance, border and openness; point-to-plane
 /// with a third of tangential pull; landmarks as priors that fade.
 ///   source_landmarks, target_landmarks  #L x 3, pairs by row, on or near the surfaces
 ///   throws  invalid_input: what ThinPlateSpline and fit_similarity refuse; surfaces without triangles

@@ -196,8 +196,9 @@ void Run::find_places() {
   for (std::size_t r = 0; r < source_surface_.vertices.size(); ++r)
     warped_source_.row(source_surface_.vertices[r]) = registration_.guide.row(static_cast<Eigen::Index>(r));
   piece_motions_ = detail::piece_motions(
-      source_pool_, source_skin_, source_.shapes.size(), [&](std::size_t s) { return pooled_delta(source_.shapes[s]); },
-      source_weights_, registration_.unit / registration_.similarity.scale);
+      source_pool_, source_skin_, source_.shapes.size(),
+      [&](std::size_t s) { return pooled_delta(source_.shapes[s]); }, source_weights_,
+      registration_.unit / registration_.similarity.scale);
   plans_ = detail::plan_pieces(piece_input());
   for (const detail::PiecePlan& plan : plans_)
     report_.pieces.push_back({target_pool_.piece_name[at(plan.piece)],
@@ -327,8 +328,9 @@ void Run::carry_shapes() {
 
   result_.shapes.resize(count);
   const detail::PieceInput pieces = piece_input();
-  const std::vector<detail::Ball> balls =
-      options_.method == TransferMethod::thesis ? std::vector<detail::Ball>() : detail::eye_balls(pieces, plans_);
+  const std::vector<detail::Ball> balls = options_.method == TransferMethod::thesis
+                                              ? std::vector<detail::Ball>()
+                                              : detail::eye_balls(pieces, plans_);
   parallel_for(count, 1, [&](std::size_t begin, std::size_t) {
     const std::size_t s = begin;
     const Shape& shape = source_.shapes[s];

@@ -30,8 +30,10 @@ std::vector<Ball> eye_balls(const PieceInput& input, const std::vector<PiecePlan
     if (plan.kind != PieceKind::eye || plan.vertices.size() < 10) continue;
     const PointsD points = input.target.positions(plan.vertices, Eigen::all);
     const Ball ball = fit_ball(points);
-    const Eigen::ArrayXd off = (points.rowwise() - ball.centre.transpose()).rowwise().norm().array() - ball.radius;
-    if (ball.radius > 0 && ball.radius < input.unit && std::sqrt(off.square().mean()) < roundness * ball.radius)
+    const Eigen::ArrayXd off =
+        (points.rowwise() - ball.centre.transpose()).rowwise().norm().array() - ball.radius;
+    if (ball.radius > 0 && ball.radius < input.unit &&
+        std::sqrt(off.square().mean()) < roundness * ball.radius)
       balls.push_back(ball);
   }
   return balls;
