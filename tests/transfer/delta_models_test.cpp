@@ -71,15 +71,15 @@ TEST(dense_spline, reproduces_an_affine_map) {
   const PointsD aligned = random_points(100, 1), landmarks = random_points(10, 2);
   Eigen::Matrix3d linear;
   linear << 2, 0.5, 0, 0, 1, -0.2, 0.1, 0, 3;
-  const ThinPlateSpline spline =
-      dense_spline(aligned, aligned * linear.transpose(), landmarks, landmarks * linear.transpose(), 40);
+  const ThinPlateSpline spline = dense_spline(aligned, aligned * linear.transpose(), landmarks,
+                                              landmarks * linear.transpose(), farthest_points(aligned, 40));
   const PointsD probes = 3 * random_points(20, 3);
   EXPECT_TRUE(spline(probes).isApprox(probes * linear.transpose(), 1e-8));
 }
 
 TEST(dense_spline, takes_a_place_once) {
   const PointsD points = random_points(30, 4);
-  EXPECT_NO_THROW(dense_spline(points, points, points, points, 500));
+  EXPECT_NO_THROW(dense_spline(points, points, points, points, farthest_points(points, 500)));
 }
 
 /// A bumpy grid under a similarity: every model is known.
