@@ -58,6 +58,7 @@ struct Eyes {
     registration.guide = guide;
     maps.positions = maps.aligned = source.positions;
     maps.scale = Eigen::VectorXd::Ones(2 * lid);
+    maps.samples = farthest_points(maps.aligned, 1500);
   }
   struct Looked : ContactModel {
     Looked(const Eyes& eyes, const std::vector<std::string>& names, const std::vector<PointsD>& deltas)
