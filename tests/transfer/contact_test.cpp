@@ -57,6 +57,7 @@ struct Eyes {
     registration = no_registration(source, 1);
     registration.guide = guide;
     maps.positions = maps.aligned = source.positions;
+    maps.samples = farthest_points(maps.aligned, 1000);
     maps.scale = Eigen::VectorXd::Ones(2 * lid);
     maps.samples = farthest_points(maps.aligned, 1500);
   }
@@ -113,6 +114,7 @@ TEST(ContactModel, what_comes_together_along_the_skin_is_no_contact) {
   eyes.source.triangles.bottomRows(2) << count, count + 1, count + 2, count, count + 2, count + 3;
   eyes.registration = no_registration(eyes.source, 1);
   eyes.maps.positions = eyes.maps.aligned = eyes.source.positions;
+  eyes.maps.samples = farthest_points(eyes.maps.aligned, 1000);
   PointsD delta = PointsD::Zero(count + 4, 3);
   delta.topRows(count) = blink(0.1);
   EXPECT_THAT(eyes.look_at({"eyeBlink"}, {delta}).pairs(0), IsEmpty());
