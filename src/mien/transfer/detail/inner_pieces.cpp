@@ -189,6 +189,30 @@ bool find_donors(const PieceInput& in, const std::vector<char>& donors, const st
   return true;
 }
 
+/// Gives every vertex far from the skin the place of the nearest vertex that is close to it: a lash's tip moves with its
+/// root, not with whatever skin lies behind it.
+void hold_by_roots(const PieceInput& in, std::vector<double> distance, PiecePlan& plan) {
+  std::vector<double> sorted = distance;
+  const auto third = sorted.begin() + static_cast<long>(sorted.size() / 3);
+  std::nth_element(sorted.begin(), third, sorted.end());
+  const double close = *third;
+  for (std::size_t i = 0; i < plan.vertices.size(); ++i) {
+    if (distance[i] <= close) continue;
+    std::size_t root = i;
+    double best = std::numeric_limits<double>::infinity();
+    for (std::size_t j = 0; j < plan.vertices.size(); ++j) {
+      const double d =
+          (in.target.positions.row(plan.vertices[i]) - in.target.positions.row(plan.vertices[j])).norm();
+      if (distance[j] > close || d >= best) continue;
+      best = d;
+      root = j;
+    }
+    plan.triangle[i] = plan.triangle[root];
+    plan.barycentric[i] = plan.barycentric[root];
+    plan.fade[i] = plan.fade[root];
+  }
+}
+
 struct SkinFit {
   double mean_distance = 0, behind = 0;  // share of vertices that lie behind the skin
 };
@@ -196,6 +220,7 @@ struct SkinFit {
 /// The closest place on the target's skin for every vertex of the piece.
 SkinFit find_skin(const PieceInput& in, const SurfaceQuery& skin, PiecePlan& plan) {
   SkinFit fit;
+  std::vector<double> distances;
   const Triangles& triangles = in.target_surface.surface.triangles;
   const PointsD& positions = in.target_surface.surface.positions;
   plan.triangle.clear();
@@ -207,10 +232,12 @@ SkinFit find_skin(const PieceInput& in, const SurfaceQuery& skin, PiecePlan& pla
     const Eigen::Vector3d normal = (corner(1) - corner(0)).cross(corner(2) - corner(0));
     plan.triangle.push_back(hit.triangle);
     plan.barycentric.push_back(hit.barycentric);
+    distances.push_back(hit.distance);
     plan.fade.push_back(std::exp(-std::pow(hit.distance / (0.15 * in.unit), 2)));
     fit.mean_distance += hit.distance / static_cast<double>(plan.vertices.size());
     fit.behind += (normal.dot(position - hit.position) < 0) / static_cast<double>(plan.vertices.size());
   }
+  if (plan.kind == PieceKind::lash) hold_by_roots(in, distances, plan);
   return fit;
 }
 
