@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <Eigen/LU>
 #include <limits>
 #include <set>
 
@@ -132,6 +133,29 @@ TEST(transfer, joints_alone_make_no_shapes) {
   EXPECT_THAT(result.shapes, IsEmpty());
   EXPECT_EQ(joint_names(result), joint_names(made("human")));
   for (const Part& part : result.parts) EXPECT_FALSE(part.skin_weights.empty()) << part.name;
+}
+
+TEST(transfer, a_part_that_hangs_below_a_joint_gives_its_motion_as_skin_weights) {
+  Character source = without_shapes(made("human"));
+  const int jaw = find_node(source, "jaw"), teeth = find_part(source, "teethLower");
+  ASSERT_GE(jaw, 0);
+  ASSERT_GE(teeth, 0);
+  // The same place as before, now held by the jaw alone.
+  Node holder;
+  holder.name = "teeth_holder";
+  holder.parent = jaw;
+  holder.has_matrix = true;
+  holder.matrix = model_matrices(source)[jaw].inverse();
+  source.parts[teeth].node = static_cast<int>(source.nodes.size());
+  source.parts[teeth].skin = -1;
+  source.parts[teeth].skin_weights = {};
+  source.nodes.push_back(holder);
+  const Character result = transfer(source, made("cartoon")).character;
+  EXPECT_THAT(validate(result), IsEmpty());
+  EXPECT_EQ(find_node(result, "teeth_holder"), -1);
+  const SkinWeights& weights = result.parts[find_part(result, "teethLower")].skin_weights;
+  ASSERT_FALSE(weights.empty());
+  for (const int joint : weights.joints) EXPECT_EQ(result.nodes[result.skins[0].joints[joint]].name, "jaw");
 }
 
 TEST(transfer, exaggeration_multiplies_displacements) {
