@@ -130,10 +130,14 @@ std::vector<Eigen::Vector2d> corner_uvs(const UvSource& source, const PointsD& p
         radius = std::max(radius, a.norm());
         normal += a.cross(row(positions, face[(c + 1) % face.size()]) - centre);
       }
-      auto hit = guide.closest(centre, reach_limit, facing(normal));
-      if (hit.triangle < 0) hit = guide.closest(centre);
+      auto hit = guide.closest(centre);
+      const auto same_side = facing(normal);
+      if (!same_side(hit.triangle, hit.position)) {
+        const auto other = guide.closest(centre, reach_limit, same_side);
+        if (other.triangle >= 0) hit = other;
+      }
       if (!source.has_uv[at(hit.triangle)]) continue;
-      const auto candidates = finder.around(hit.triangle, hit.position, 1.5 * radius);
+      const auto candidates = finder.around(hit.triangle, hit.position, 1.05 * radius);
       for (std::size_t c = 0; c < face.size(); ++c)
         uvs[at(faces.offset(f)) + c] = finder.uv_at(row(positions, face[c]), candidates);
     }

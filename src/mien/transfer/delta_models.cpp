@@ -50,20 +50,16 @@ Eigen::VectorXd local_scale(const PointsD& aligned, const PointsD& guide, const 
 
 namespace {
 
-/// T(x + d) - T(x) where d is not zero.
-PointsD through_spline(const ThinPlateSpline& spline, const PointsD& positions, const PointsD& deltas) {
-  std::vector<Eigen::Index> moving;
+/// T(x + d) - T(x) where d is not zero; `image` is T(x) of all rows, or empty.
+PointsD through_spline(const ThinPlateSpline& spline, const PointsD& positions, const PointsD& image,
+                       const PointsD& deltas) {
+  std::vector<int> moving;
   for (Eigen::Index v = 0; v < deltas.rows(); ++v)
-    if (deltas.row(v).squaredNorm() > 0) moving.push_back(v);
-  PointsD from(static_cast<Eigen::Index>(moving.size()), 3), to(from.rows(), 3);
-  for (Eigen::Index i = 0; i < from.rows(); ++i) {
-    from.row(i) = positions.row(moving[static_cast<std::size_t>(i)]);
-    to.row(i) = from.row(i) + deltas.row(moving[static_cast<std::size_t>(i)]);
-  }
-  const PointsD change = spline(to) - spline(from);
+    if (deltas.row(v).squaredNorm() > 0) moving.push_back(static_cast<int>(v));
+  const PointsD from = positions(moving, Eigen::all), to = from + deltas(moving, Eigen::all);
+  const PointsD change = spline(to) - (image.rows() > 0 ? PointsD(image(moving, Eigen::all)) : spline(from));
   PointsD result = PointsD::Zero(deltas.rows(), 3);
-  for (Eigen::Index i = 0; i < from.rows(); ++i)
-    result.row(moving[static_cast<std::size_t>(i)]) = change.row(i);
+  result(moving, Eigen::all) = change;
   return result;
 }
 
@@ -72,7 +68,7 @@ PointsD through_spline(const ThinPlateSpline& spline, const PointsD& positions, 
 PointsD carry_deltas(const DeltaMaps& maps, DeltaModel model, double warp_share, const PointsD& deltas) {
   const PointsD turned = maps.similarity.of_vectors(deltas);
   const auto local = [&] { return PointsD(maps.scale.asDiagonal() * turned); };
-  const auto warp = [&] { return through_spline(*maps.dense, maps.aligned, turned); };
+  const auto warp = [&] { return through_spline(*maps.dense, maps.aligned, maps.dense_image, turned); };
   switch (model) {
     case DeltaModel::raw:
       return turned;
@@ -83,7 +79,7 @@ PointsD carry_deltas(const DeltaMaps& maps, DeltaModel model, double warp_share,
     case DeltaModel::warp:
       return warp();
     case DeltaModel::thesis:
-      return through_spline(*maps.landmarks, maps.positions, deltas);
+      return through_spline(*maps.landmarks, maps.positions, maps.landmark_image, deltas);
     case DeltaModel::automatic:
       break;
   }

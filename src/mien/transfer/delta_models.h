@@ -46,6 +46,8 @@ struct DeltaMaps {
   Eigen::VectorXd scale;     ///< #V: local_scale; used by local
   const ThinPlateSpline* dense = nullptr;      ///< aligned -> target; used by warp
   const ThinPlateSpline* landmarks = nullptr;  ///< source -> target; used by thesis
+  PointsD dense_image;     ///< #V: dense(aligned), or no rows: computed where it is needed
+  PointsD landmark_image;  ///< #V: landmarks(positions), or no rows
 };
 
 /// One shape's displacements (#V x 3, source model space) in the target's model space, still at the source's vertices:

@@ -163,12 +163,14 @@ void Run::find_guide() {
   maps_.similarity = registration_.similarity;
   maps_.aligned = registration_.similarity(maps_.positions);
   maps_.landmarks = landmark_spline_.get();
+  maps_.landmark_image = (*landmark_spline_)(maps_.positions);
   if (options_.method == TransferMethod::thesis && options_.deltas != DeltaModel::warp) return;
   maps_.samples = farthest_points(maps_.aligned, most_samples);
   dense_ = std::make_unique<ThinPlateSpline>(
       dense_spline(maps_.aligned, registration_.guide, registration_.similarity(from), to,
                    std::span(maps_.samples).first(std::min(maps_.samples.size(), spline_samples))));
   maps_.dense = dense_.get();
+  maps_.dense_image = (*dense_)(maps_.aligned);
 }
 
 void Run::find_places() {

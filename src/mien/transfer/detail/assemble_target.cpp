@@ -103,7 +103,12 @@ Shape shape_of_target(const Shape& source, const Pool& pool, const Character& ch
 
 int flipped_triangles(const Surface& surface, const PointsD& deltas) {
   int count = 0;
+  std::vector<char> moves(static_cast<std::size_t>(deltas.rows()));
+  for (Eigen::Index v = 0; v < deltas.rows(); ++v)
+    moves[static_cast<std::size_t>(v)] = deltas.row(v).squaredNorm() > 0;
   for (Eigen::Index t = 0; t < surface.triangles.rows(); ++t) {
+    const auto& corners = surface.triangles.row(t);
+    if (!moves[at(corners[0])] && !moves[at(corners[1])] && !moves[at(corners[2])]) continue;
     const auto normal = [&](bool moved) {
       Eigen::Vector3d corner[3];
       for (int k = 0; k < 3; ++k) {
