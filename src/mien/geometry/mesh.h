@@ -55,7 +55,11 @@ class Faces {
 struct UvSet {
   Points2 coordinates;
   std::vector<int> corners;
-  bool operator==(const UvSet&) const = default;
+  /// Matrices of different sizes differ; Eigen alone compares none but equal sizes.
+  bool operator==(const UvSet& other) const {
+    return corners == other.corners && coordinates.rows() == other.coordinates.rows() &&
+           coordinates == other.coordinates;
+  }
 };
 
 /// A run of faces with one name and one material: an OBJ group, a glTF primitive.

@@ -347,7 +347,8 @@ void Run::carry_shapes() {
     }
     const double exaggeration = exaggeration_of(shape.name);
     PointsD skin = exaggeration * PointsD((*carrier_)(moved));
-    detail::keep_out_of_eyes(balls, target_surface_.surface.positions, skin);
+    if (close_lids && contact.closes_lid(s))
+      detail::keep_out_of_eyes(balls, target_surface_.surface.positions, skin);
     PointsD target = PointsD::Zero(target_pool_.positions.rows(), 3);
     for (std::size_t r = 0; r < target_surface_.vertices.size(); ++r)
       target.row(target_surface_.vertices[r]) = skin.row(static_cast<Eigen::Index>(r));

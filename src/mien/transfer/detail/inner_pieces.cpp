@@ -189,13 +189,13 @@ bool find_donors(const PieceInput& in, const std::vector<char>& donors, const st
   return true;
 }
 
-/// Gives every vertex far from the skin the place of the nearest vertex that is close to it: a lash's tip moves with its
+/// Gives every vertex well off the skin the place of the nearest vertex that is close to it: a lash's tip moves with its
 /// root, not with whatever skin lies behind it.
 void hold_by_roots(const PieceInput& in, std::vector<double> distance, PiecePlan& plan) {
   std::vector<double> sorted = distance;
   const auto third = sorted.begin() + static_cast<long>(sorted.size() / 3);
   std::nth_element(sorted.begin(), third, sorted.end());
-  const double close = *third;
+  const double close = std::max(*third, 0.02 * in.unit);
   for (std::size_t i = 0; i < plan.vertices.size(); ++i) {
     if (distance[i] <= close) continue;
     std::size_t root = i;
