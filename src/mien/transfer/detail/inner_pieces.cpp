@@ -195,7 +195,7 @@ void hold_by_roots(const PieceInput& in, std::vector<double> distance, PiecePlan
   std::vector<double> sorted = distance;
   const auto third = sorted.begin() + static_cast<long>(sorted.size() / 3);
   std::nth_element(sorted.begin(), third, sorted.end());
-  const double close = std::max(*third, 0.02 * in.unit);
+  const double close = *third;
   for (std::size_t i = 0; i < plan.vertices.size(); ++i) {
     if (distance[i] <= close) continue;
     std::size_t root = i;
@@ -237,7 +237,8 @@ SkinFit find_skin(const PieceInput& in, const SurfaceQuery& skin, PiecePlan& pla
     fit.mean_distance += hit.distance / static_cast<double>(plan.vertices.size());
     fit.behind += (normal.dot(position - hit.position) < 0) / static_cast<double>(plan.vertices.size());
   }
-  if (plan.kind == PieceKind::lash) hold_by_roots(in, distances, plan);
+  // Brows lie on the skin all along; lashes stand off it.
+  if (has(lower(in.target.piece_name[at(plan.piece)]), {"lash"})) hold_by_roots(in, distances, plan);
   return fit;
 }
 
