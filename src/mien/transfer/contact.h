@@ -45,8 +45,9 @@ class ContactModel {
   const std::vector<ContactPair>& pairs(std::size_t shape) const;
 
   /// The switch between local and warp: t = clamp((0.62 - rho) / 0.15) clamp((sigma - 0.03) / 0.015), 0 with fewer than
-  /// 5 shapes that touch. Needs look_at_shapes first unless a model is asked for by name. Where a smooth Jacobian keeps contacts that raw displacements lose, the target's proportions
-  /// are a warp of the source's and motion should be warped too.
+  /// 5 shapes that touch. Where a smooth Jacobian keeps contacts that raw displacements lose, the target's proportions
+  /// are a warp of the source's and motion should be warped too. Needs look_at_shapes first unless a model is asked for
+  /// by name.
   DeltaDecision decide(DeltaModel wanted) const;
 
   /// Whether the shape closes a lid: it has contacts and its name speaks of a blink, a lid or closing an eye.
@@ -58,8 +59,9 @@ class ContactModel {
   double lid_warp_share(std::size_t shape, const PointsD& moved) const;
 
   /// Scales `moved` (#V x 3, displacements on the guide) by a smooth factor in [0.5, 2] so that the lid's gaps close at
-  /// least as far as on the source and lids do not run through each other; directions stay. Minimises int h^2 + l^2 |grad h|^2 + 100 mean (closed' - closed)^2 with
-  /// l = 0.12. Does nothing on other shapes. Cost: one sparse factorisation.
+  /// least as far as on the source and lids do not run through each other; directions stay. The factor is 1 + h, h
+  /// minimising int h^2 + l^2 |grad h|^2 + 100 mean (closed' - closed)^2 with l = 0.12, around the lid alone. Does
+  /// nothing on other shapes. Cost: one sparse factorisation of that surface.
   void close_lids(std::size_t shape, PointsD& moved) const;
 
  private:

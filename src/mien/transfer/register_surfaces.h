@@ -34,9 +34,11 @@ struct Registration {
   Eigen::VectorXd source_openness, target_openness;  ///< #V, see geometry/openness.h
 };
 
-/// Non-rigid registration by a bi-Laplacian prior on the displacement from the spline's start, its stiffness falling
-/// over ten stages; closest points both ways with gates on normal, distance, border and openness; point-to-plane
-/// with a third of tangential pull; landmarks as priors that fade.
+/// Non-rigid registration. The landmarks' spline, and far from all landmarks quadratic maps of the whole skin, give the
+/// start; a bi-Laplacian prior on the displacement from it loses its stiffness over ten stages. Closest points both ways
+/// pull with gates on normal, distance, border and openness, point to plane with a tangential share of a third that
+/// ends at an eighth; lid and lip lines and the neck's border pull onto each other while the surface is stiff; landmarks
+/// are priors that fade.
 ///   source_landmarks, target_landmarks  #L x 3, pairs by row, on or near the surfaces
 ///   throws  invalid_input: what ThinPlateSpline and fit_similarity refuse; surfaces without triangles
 ///   cost    about 1.5 s for 14,000 vertices on either side, one core

@@ -73,7 +73,7 @@ struct TransferResult {
 ///   throws  invalid_input: nothing to transfer; landmarks that cannot carry a warp (names them); an exaggerated shape
 ///           that the source does not have; no skin under the landmarks
 ///   method  thesis chapter 4 with correspondence by non-rigid registration (register_surfaces.h), displacements by
-///           delta_models.h and contact.h, joints through a dense spline, skin weights along the correspondence
+///           delta_models.h and contact.h, joints by a moving similarity, skin weights along the correspondence
 ///   cost    2 to 4 s for 27,000 vertices and 57 shapes on one core; memory about 40 bytes x vertices x shapes
 /// Same input, same bytes, at any thread count.
 TransferResult transfer(const Character& source, const Character& target,

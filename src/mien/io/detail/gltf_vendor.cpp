@@ -6,6 +6,7 @@
 #include "mien/core/error.h"
 #include "mien/io/detail/gltf_read.h"
 #include "mien/io/detail/gltf_write.h"
+#include "mien/io/detail/point.h"
 
 // The MIEN_character extension, both ways; docs/io.md is its specification. A program that does not know it
 // sees a plain glTF. When another program changed a mesh so that the extension no longer fits it, the mesh is
@@ -48,13 +49,7 @@ Json vendor_uv(const UvSet& uv, const SplitMesh& split, GltfBuilder& builder) {
 
 Json vendor_point(const SurfacePoint& point) {
   Json json = {{"mesh", point.part}};
-  if (point.face < 0) {
-    json["vertex"] = point.vertex;
-    return json;
-  }
-  json["face"] = point.face;
-  json["barycentric"] = {point.barycentric[0], point.barycentric[1], point.barycentric[2]};
-  if (point.corners != std::array{0, 1, 2}) json["corners"] = point.corners;
+  add_place_on_part(point, json);
   return json;
 }
 

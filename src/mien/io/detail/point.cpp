@@ -94,16 +94,20 @@ SurfacePoint PointReader::read_position(const JsonObject& source, int part) {
   return point;
 }
 
-Json point_json(const SurfacePoint& point, const Character& character) {
-  Json json = Json::object();
-  if (point.part > 0) json["part"] = character.parts[point.part].name;
+void add_place_on_part(const SurfacePoint& point, Json& json) {
   if (point.face < 0) {
     json["vertex"] = point.vertex;
-    return json;
+    return;
   }
   json["face"] = point.face;
   json["barycentric"] = {point.barycentric[0], point.barycentric[1], point.barycentric[2]};
   if (point.corners != std::array{0, 1, 2}) json["corners"] = point.corners;
+}
+
+Json point_json(const SurfacePoint& point, const Character& character) {
+  Json json = Json::object();
+  if (point.part > 0) json["part"] = character.parts[point.part].name;
+  add_place_on_part(point, json);
   return json;
 }
 

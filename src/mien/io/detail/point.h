@@ -29,6 +29,10 @@ class PointReader {
   std::map<int, Surface> surfaces_;  ///< by part, -1: all parts
 };
 
+/// Adds where on its part a point is: a vertex, or a face with barycentric weights. Landmark files and the vendor
+/// extension name the part each in its own way.
+void add_place_on_part(const SurfacePoint& point, Json& json);
+
 Json point_json(const SurfacePoint& point, const Character& character);
 
 }  // namespace mien::detail

@@ -36,8 +36,6 @@ class DisplacementSolver {
   /// `start` (#V x 3): where the iteration begins. Cost: one factorisation, about 0.1 s at 14,000 vertices.
   PointsD solve(double stiffness, const std::vector<Wish>& wishes, const PointsD& start) const;
 
-  const Eigen::VectorXd& masses() const { return masses_; }  ///< #V, sum one
-
  private:
   struct Factor;
   PointsD rest_;
