@@ -31,6 +31,10 @@ struct Pose {
 /// The pose when nothing is animated: shapes at rest, nodes at rest.
 Pose rest_pose(const Character& character);
 
+/// The node's local matrix when its local transform is `local`: the matrix that its file gave (it may shear) while
+/// `local` is its rest, otherwise the transform's.
+Eigen::Matrix4d local_matrix(const Node& node, const Transform& local);
+
 /// #N matrices, node space to model space, in `pose`. A node whose local transform is its rest keeps the
 /// matrix that its file gave (it may shear).
 ///   throws  invalid_input: a number of locals other than #N; cyclic parents

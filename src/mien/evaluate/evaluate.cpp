@@ -2,36 +2,15 @@
 // once, at the end.
 #include "mien/evaluate/evaluate.h"
 
-#include <cmath>
 #include <string>
 
 #include "mien/core/error.h"
 #include "mien/deform/shapes.h"
 #include "mien/deform/skin.h"
+#include "mien/evaluate/detail/check_pose.h"
 
 namespace mien {
 namespace {
-
-void check_pose(const Character& character, const Pose& pose) {
-  for (std::size_t n = 0; n < pose.locals.size() && n < character.nodes.size(); ++n) {
-    const Transform& local = pose.locals[n];
-    if (!local.translation.allFinite() || !local.rotation.coeffs().allFinite() || !local.scale.allFinite())
-      throw invalid_input("pose of node " + character.nodes[n].name, "is not finite", "finite numbers");
-  }
-  for (const PartShapeWeight& exception : pose.part_shape_weights)
-    if (exception.shape < 0 || exception.shape >= static_cast<int>(character.shapes.size()))
-      throw invalid_input(
-          "pose", "weighs shape " + std::to_string(exception.shape),
-          "a shape from 0 to " + std::to_string(static_cast<int>(character.shapes.size()) - 1));
-}
-
-ShapeWeights weights_on_part(const Pose& pose, int part) {
-  ShapeWeights weights = pose.shape_weights;
-  for (const PartShapeWeight& exception : pose.part_shape_weights)
-    if (exception.part == part && exception.shape < weights.values.size())
-      weights.values[exception.shape] = exception.value;
-  return weights;
-}
 
 PointsD carry(const PointsD& positions, const Eigen::Matrix4d& matrix) {
   PointsD moved = positions * matrix.topLeftCorner<3, 3>().transpose();
@@ -55,13 +34,15 @@ PointsD to_model_space(const Character& character, const Part& part, const Point
 }  // namespace
 
 std::vector<Points> evaluate(const Character& character, const Pose& pose) {
-  check_pose(character, pose);
+  detail::check_pose(character, pose);
   const std::vector<Eigen::Matrix4d> model = model_matrices(character, pose);
+  ShapeWeights weights(character.shapes.size());
   std::vector<Points> posed;
   posed.reserve(character.parts.size());
   for (std::size_t p = 0; p < character.parts.size(); ++p) {
     const int part = static_cast<int>(p);
-    const PointsD shaped = add_shapes(character, part, weights_on_part(pose, part));
+    detail::weights_on_part(pose, part, weights.values);
+    const PointsD shaped = add_shapes(character, part, weights);
     posed.push_back(to_model_space(character, character.parts[p], shaped, model).cast<float>());
   }
   return posed;

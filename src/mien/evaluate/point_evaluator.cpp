@@ -1,0 +1,346 @@
+// Points are made of sites: the vertices that they lie between, each with its own row of deltas and of influences, and
+// every vertex once however many points share it. With x the shaped position of a site and M_c what carrier c (a joint)
+// does, the site is at y = sum_c w_c M_c x. For node n, M_c = U exp([w]x) B_c with U = (parent's model matrix) T R, and
+// B_c = (scale of n) (locals between n and the joint) (inverse bind): then dy/dw = -U [sum_c w_c B_c x]x. B_c is walked
+// down from n, not up from the joint by inverses: a scale of zero somewhere does no harm.
+#include "mien/evaluate/point_evaluator.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <string>
+
+#include "mien/core/error.h"
+#include "mien/evaluate/detail/check_pose.h"
+#include "mien/evaluate/detail/joint_chain.h"
+
+namespace mien {
+
+using detail::Affine;
+
+namespace {
+
+struct Site {
+  int column = 0;  // of the weights of its part
+  Eigen::Vector3d neutral;
+  int delta_begin = 0, delta_end = 0;
+  int influence_begin = 0, influence_end = 0;  // none: the site is in model space already
+};
+
+struct Delta {
+  int shape = 0;
+  Eigen::Vector3d move;
+};
+
+struct Influence {
+  int carrier = 0;
+  double weight = 1;
+};
+
+/// A point is the sum of weight x site over its terms.
+struct Term {
+  int point = 0, site = 0;
+  double weight = 1;
+};
+
+Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& v) {
+  Eigen::Matrix3d m;
+  m << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
+  return m;
+}
+
+void check_point(const Character& character, const SurfacePoint& point, std::size_t index) {
+  const std::string place = "point " + std::to_string(index);
+  if (point.part < 0 || point.part >= static_cast<int>(character.parts.size()))
+    throw invalid_input(place, "is on part " + std::to_string(point.part), "a part that exists");
+  const Mesh& mesh = character.parts[point.part].mesh;
+  if (point.face < 0) {
+    if (point.vertex < 0 || point.vertex >= static_cast<int>(mesh.vertex_count()))
+      throw invalid_input(place, "is on vertex " + std::to_string(point.vertex), "a vertex that exists");
+    return;
+  }
+  if (point.face >= static_cast<int>(mesh.faces.size()))
+    throw invalid_input(place, "is on face " + std::to_string(point.face), "a face that exists");
+  const int corners = static_cast<int>(mesh.faces[point.face].size());
+  for (const int corner : point.corners)
+    if (corner < 0 || corner >= corners)
+      throw invalid_input(place, "names corner " + std::to_string(corner), "a corner that its face has");
+  if (!point.barycentric.allFinite())
+    throw invalid_input(place, "has barycentric coordinates that are not finite", "finite numbers");
+}
+
+}  // namespace
+
+struct PointEvaluator::Impl {
+  Character outline;
+  std::size_t point_count = 0;
+  std::vector<int> parts;  // the parts that have sites: the columns of `weights`
+  std::vector<Site> sites;
+  std::vector<Delta> deltas;
+  std::vector<Influence> influences;
+  std::vector<Term> terms;
+  detail::JointChain chain;
+
+  // Of the last pose.
+  Eigen::MatrixXd weights;             // #S x parts
+  Eigen::MatrixXi is_exception;        // #S x parts: the shape weight is the part's own
+  std::vector<Affine> model, carried;  // by link, by carrier
+  PointsD shaped, placed;              // by site
+
+  // Of one joint freedom.
+  std::vector<char> is_below;  // by link
+  std::vector<Affine> below;
+  std::vector<int> column_of_shape;  // #S, -1: not asked for
+
+  void add_point(const Character& character, const SurfacePoint& point,
+                 std::map<std::pair<int, int>, int>& known);
+  int add_site(const Character& character, int part, int vertex, std::map<std::pair<int, int>, int>& known);
+  void add_influences(const Character& character, const Part& part, int vertex);
+  void add_deltas(const Character& character, const std::map<std::pair<int, int>, int>& known);
+  void pose_sites(const Pose& pose);
+  void set_weights(const Pose& pose);
+  Eigen::Matrix3d linear_of(const Site& site) const;
+  void add_shape_columns(const std::vector<int>& column_of_shape, Eigen::MatrixXd& out) const;
+  void walk_below(int link, const Pose& pose);
+  void add_joint_columns(const JointFreedom& freedom, const Pose& pose, Eigen::Index column,
+                         Eigen::MatrixXd& out);
+  void check(const Freedoms& freedoms) const;
+};
+
+void PointEvaluator::Impl::add_point(const Character& character, const SurfacePoint& point,
+                                     std::map<std::pair<int, int>, int>& known) {
+  const int index = static_cast<int>(point_count++);
+  if (point.face < 0) {
+    terms.push_back({index, add_site(character, point.part, point.vertex, known), 1});
+    return;
+  }
+  const auto face = character.parts[point.part].mesh.faces[point.face];
+  for (int k = 0; k < 3; ++k)
+    if (point.barycentric[k] != 0)
+      terms.push_back(
+          {index, add_site(character, point.part, face[point.corners[k]], known), point.barycentric[k]});
+}
+
+int PointEvaluator::Impl::add_site(const Character& character, int part, int vertex,
+                                   std::map<std::pair<int, int>, int>& known) {
+  const auto [found, is_new] = known.try_emplace({part, vertex}, static_cast<int>(sites.size()));
+  if (!is_new) return found->second;
+  const auto column = std::find(parts.begin(), parts.end(), part);
+  Site site;
+  site.column = static_cast<int>(column - parts.begin());
+  if (column == parts.end()) parts.push_back(part);
+  site.neutral = character.parts[part].mesh.positions.row(vertex).cast<double>();
+  site.influence_begin = static_cast<int>(influences.size());
+  add_influences(character, character.parts[part], vertex);
+  site.influence_end = static_cast<int>(influences.size());
+  sites.push_back(site);
+  return found->second;
+}
+
+void PointEvaluator::Impl::add_influences(const Character& character, const Part& part, int vertex) {
+  if (part.skin < 0) {
+    if (part.node >= 0) influences.push_back({chain.add_node(character, part.node), 1});
+    return;
+  }
+  const SkinWeights& weights = part.skin_weights;
+  if (weights.empty()) return;
+  if (weights.offsets.size() != part.mesh.vertex_count() + 1)
+    throw invalid_input("part " + part.name,
+                        "has skin weights of " + std::to_string(weights.offsets.size()) + " offsets",
+                        std::to_string(part.mesh.vertex_count() + 1) + ", one a vertex and the end");
+  double total = 0;
+  for (int i = weights.offsets[vertex]; i < weights.offsets[vertex + 1]; ++i) total += weights.weights[i];
+  if (total <= 0) return;
+  for (int i = weights.offsets[vertex]; i < weights.offsets[vertex + 1]; ++i)
+    influences.push_back(
+        {chain.add_joint(character, part.skin, weights.joints[i]), weights.weights[i] / total});
+}
+
+void PointEvaluator::Impl::add_deltas(const Character& character,
+                                      const std::map<std::pair<int, int>, int>& known) {
+  std::vector<std::vector<Delta>> of_site(sites.size());
+  for (std::size_t s = 0; s < character.shapes.size(); ++s)
+    for (const PartDelta& delta : character.shapes[s].parts)
+      for (auto site = known.lower_bound({delta.part, 0});
+           site != known.end() && site->first.first == delta.part; ++site) {
+        const auto at = std::lower_bound(delta.vertices.begin(), delta.vertices.end(), site->first.second);
+        if (at == delta.vertices.end() || *at != site->first.second) continue;
+        const auto row = static_cast<Eigen::Index>(at - delta.vertices.begin());
+        of_site[site->second].push_back({static_cast<int>(s), delta.deltas.row(row).cast<double>()});
+      }
+  for (std::size_t i = 0; i < sites.size(); ++i) {
+    sites[i].delta_begin = static_cast<int>(deltas.size());
+    deltas.insert(deltas.end(), of_site[i].begin(), of_site[i].end());
+    sites[i].delta_end = static_cast<int>(deltas.size());
+  }
+}
+
+void PointEvaluator::Impl::set_weights(const Pose& pose) {
+  for (std::size_t p = 0; p < parts.size(); ++p)
+    weights.col(static_cast<Eigen::Index>(p)) = pose.shape_weights.values;
+  is_exception.setZero();
+  for (const PartShapeWeight& exception : pose.part_shape_weights)
+    for (std::size_t p = 0; p < parts.size(); ++p)
+      if (parts[p] == exception.part) {
+        weights(exception.shape, static_cast<Eigen::Index>(p)) = exception.value;
+        is_exception(exception.shape, static_cast<Eigen::Index>(p)) = 1;
+      }
+}
+
+void PointEvaluator::Impl::pose_sites(const Pose& pose) {
+  detail::check_pose(outline, pose);
+  set_weights(pose);
+  chain.evaluate(outline.nodes, pose, model, carried);
+  for (std::size_t i = 0; i < sites.size(); ++i) {
+    const Site& site = sites[i];
+    Eigen::Vector3d x = site.neutral;
+    for (int d = site.delta_begin; d < site.delta_end; ++d)
+      x += weights(deltas[d].shape, site.column) * deltas[d].move;
+    Eigen::Vector3d y = Eigen::Vector3d::Zero();
+    for (int k = site.influence_begin; k < site.influence_end; ++k)
+      y += influences[k].weight * (carried[influences[k].carrier] * x);
+    const auto row = static_cast<Eigen::Index>(i);
+    shaped.row(row) = x;
+    placed.row(row) = site.influence_begin == site.influence_end ? x : y;
+  }
+}
+
+Eigen::Matrix3d PointEvaluator::Impl::linear_of(const Site& site) const {
+  if (site.influence_begin == site.influence_end) return Eigen::Matrix3d::Identity();
+  Eigen::Matrix3d linear = Eigen::Matrix3d::Zero();
+  for (int k = site.influence_begin; k < site.influence_end; ++k)
+    linear += influences[k].weight * carried[influences[k].carrier].linear;
+  return linear;
+}
+
+void PointEvaluator::Impl::add_shape_columns(const std::vector<int>& columns, Eigen::MatrixXd& out) const {
+  for (const Term& term : terms) {
+    const Site& site = sites[term.site];
+    const Eigen::Matrix3d linear = term.weight * linear_of(site);
+    for (int d = site.delta_begin; d < site.delta_end; ++d)
+      if (const int column = columns[deltas[d].shape];
+          column >= 0 && !is_exception(deltas[d].shape, site.column))
+        out.block<3, 1>(3 * term.point, column) += linear * deltas[d].move;
+  }
+}
+
+/// below[c] = (scale of the node) (locals down to link c), for the links at and below `link`.
+void PointEvaluator::Impl::walk_below(int link, const Pose& pose) {
+  const auto& links = chain.links();
+  std::fill(is_below.begin(), is_below.end(), 0);
+  is_below[link] = 1;
+  below[link] = {pose.locals[links[link].node].scale.asDiagonal(), Eigen::Vector3d::Zero()};
+  for (std::size_t l = link + 1; l < links.size(); ++l) {
+    const auto [node, parent] = links[l];
+    if (parent < 0 || !is_below[parent]) continue;
+    is_below[l] = 1;
+    below[l] = below[parent] * detail::affine(local_matrix(outline.nodes[node], pose.locals[node]));
+  }
+}
+
+void PointEvaluator::Impl::add_joint_columns(const JointFreedom& freedom, const Pose& pose,
+                                             Eigen::Index column, Eigen::MatrixXd& out) {
+  const int link = chain.link_of(freedom.node);
+  if (link < 0) return;  // it moves none of the points
+  walk_below(link, pose);
+  const int parent = chain.links()[link].parent;
+  const Eigen::Matrix3d shift = parent < 0 ? Eigen::Matrix3d::Identity() : model[parent].linear;
+  const Eigen::Matrix3d turn = shift * pose.locals[freedom.node].rotation.toRotationMatrix();
+  for (const Term& term : terms) {
+    const Site& site = sites[term.site];
+    const Eigen::Vector3d x = shaped.row(term.site);
+    Eigen::Vector3d arm = Eigen::Vector3d::Zero();
+    double share = 0;
+    for (int k = site.influence_begin; k < site.influence_end; ++k) {
+      const detail::Carrier& carrier = chain.carriers()[influences[k].carrier];
+      if (!is_below[carrier.link]) continue;
+      arm += influences[k].weight * (below[carrier.link] * (carrier.inverse_bind * x));
+      share += influences[k].weight;
+    }
+    if (share == 0) continue;
+    auto rows = out.middleRows<3>(3 * term.point);
+    Eigen::Index at = column;
+    if (freedom.rotation) {
+      rows.middleCols<3>(at) -= term.weight * (turn * cross_matrix(arm));
+      at += 3;
+    }
+    if (freedom.translation) rows.middleCols<3>(at) += term.weight * share * shift;
+  }
+}
+
+void PointEvaluator::Impl::check(const Freedoms& freedoms) const {
+  for (const int shape : freedoms.shapes)
+    if (shape < 0 || shape >= static_cast<int>(outline.shapes.size()))
+      throw invalid_input("freedoms", "name shape " + std::to_string(shape),
+                          "a shape from 0 to " + std::to_string(static_cast<int>(outline.shapes.size()) - 1));
+  for (const JointFreedom& joint : freedoms.joints)
+    if (joint.node < 0 || joint.node >= static_cast<int>(outline.nodes.size()))
+      throw invalid_input("freedoms", "name node " + std::to_string(joint.node),
+                          "a node from 0 to " + std::to_string(static_cast<int>(outline.nodes.size()) - 1));
+}
+
+Eigen::Index Freedoms::column_count() const {
+  auto count = static_cast<Eigen::Index>(shapes.size());
+  for (const JointFreedom& joint : joints) count += 3 * joint.rotation + 3 * joint.translation;
+  return count;
+}
+
+PointEvaluator::PointEvaluator(const Character& character, const std::vector<SurfacePoint>& points)
+    : impl_(std::make_unique<Impl>()) {
+  impl_->outline = detail::outline(character);
+  std::map<std::pair<int, int>, int> known;  // (part, vertex) -> site
+  for (std::size_t p = 0; p < points.size(); ++p) {
+    check_point(character, points[p], p);
+    impl_->add_point(character, points[p], known);
+  }
+  impl_->add_deltas(character, known);
+  const auto shapes = static_cast<Eigen::Index>(character.shapes.size());
+  const auto parts = static_cast<Eigen::Index>(impl_->parts.size());
+  impl_->weights.resize(shapes, parts);
+  impl_->is_exception.resize(shapes, parts);
+  impl_->shaped.resize(static_cast<Eigen::Index>(impl_->sites.size()), 3);
+  impl_->placed.resize(static_cast<Eigen::Index>(impl_->sites.size()), 3);
+  impl_->is_below.resize(impl_->chain.links().size());
+  impl_->below.resize(impl_->chain.links().size());
+  impl_->column_of_shape.resize(character.shapes.size());
+}
+
+PointEvaluator::~PointEvaluator() = default;
+PointEvaluator::PointEvaluator(PointEvaluator&&) noexcept = default;
+PointEvaluator& PointEvaluator::operator=(PointEvaluator&&) noexcept = default;
+
+std::size_t PointEvaluator::point_count() const {
+  return impl_->point_count;
+}
+
+void PointEvaluator::positions(const Pose& pose, PointsD& out) {
+  impl_->pose_sites(pose);
+  out.setZero(static_cast<Eigen::Index>(impl_->point_count), 3);
+  for (const Term& term : impl_->terms) out.row(term.point) += term.weight * impl_->placed.row(term.site);
+}
+
+void PointEvaluator::jacobian(const Pose& pose, const Freedoms& freedoms, Eigen::MatrixXd& out) {
+  impl_->check(freedoms);
+  impl_->pose_sites(pose);
+  out.setZero(3 * static_cast<Eigen::Index>(impl_->point_count), freedoms.column_count());
+  std::fill(impl_->column_of_shape.begin(), impl_->column_of_shape.end(), -1);
+  for (std::size_t s = 0; s < freedoms.shapes.size(); ++s)
+    impl_->column_of_shape[freedoms.shapes[s]] = static_cast<int>(s);
+  impl_->add_shape_columns(impl_->column_of_shape, out);
+  auto column = static_cast<Eigen::Index>(freedoms.shapes.size());
+  for (const JointFreedom& joint : freedoms.joints) {
+    impl_->add_joint_columns(joint, pose, column, out);
+    column += 3 * joint.rotation + 3 * joint.translation;
+  }
+}
+
+void PointEvaluator::shape_rows(const Pose& pose, Eigen::MatrixXd& out) {
+  impl_->pose_sites(pose);
+  out.setZero(3 * static_cast<Eigen::Index>(impl_->point_count),
+              static_cast<Eigen::Index>(impl_->outline.shapes.size()));
+  std::iota(impl_->column_of_shape.begin(), impl_->column_of_shape.end(), 0);
+  impl_->add_shape_columns(impl_->column_of_shape, out);
+}
+
+}  // namespace mien

@@ -1,0 +1,202 @@
+#include "mien/evaluate/point_evaluator.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <functional>
+
+#include "evaluate/rigs.h"
+#include "mien/core/error.h"
+#include "mien/evaluate/evaluate.h"
+#include "mien/io/load.h"
+
+namespace mien {
+namespace {
+
+using ::testing::HasSubstr;
+
+template <class Call>
+std::string error_of(Call call) {
+  try {
+    call();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), Error::Kind::invalid_input);
+    return error.what();
+  }
+  return "no error";
+}
+
+SurfacePoint at_vertex(int part, int vertex) {
+  return {part, -1, vertex, {1, 0, 0}, {0, 1, 2}};
+}
+
+/// Some vertices and a point in the middle of a face of every part.
+std::vector<SurfacePoint> some_points(const Character& character) {
+  std::vector<SurfacePoint> points;
+  for (int p = 0; p < static_cast<int>(character.parts.size()); ++p) {
+    const int vertices = static_cast<int>(character.parts[p].mesh.vertex_count());
+    for (int v = 0; v < vertices; v += std::max(1, vertices / 7)) points.push_back(at_vertex(p, v));
+    points.push_back({p, 0, -1, {0.2, 0.5, 0.3}, {0, 1, 2}});
+  }
+  return points;
+}
+
+Freedoms all_freedoms(const Character& character) {
+  Freedoms all;
+  for (std::size_t s = 0; s < character.shapes.size(); ++s) all.shapes.push_back(static_cast<int>(s));
+  for (std::size_t n = 0; n < character.nodes.size(); ++n)
+    all.joints.push_back({static_cast<int>(n), true, true});
+  return all;
+}
+
+/// `pose` with freedom `column` moved by `step`.
+Pose moved(const Character& character, const Pose& pose, Eigen::Index column, double step) {
+  Pose result = pose;
+  const auto shapes = static_cast<Eigen::Index>(character.shapes.size());
+  if (column < shapes) {
+    result.shape_weights.values[column] += step;
+    return result;
+  }
+  Transform& local = result.locals[static_cast<std::size_t>((column - shapes) / 6)];
+  const auto axis = (column - shapes) % 6;
+  if (axis < 3)
+    local.rotation = local.rotation * Eigen::AngleAxisd(step, Eigen::Vector3d::Unit(axis));
+  else
+    local.translation[axis - 3] += step;
+  return result;
+}
+
+/// The Jacobian by central differences, against the analytic one, of the size of the largest entry.
+void expect_jacobian(const Character& character, const Pose& pose) {
+  PointEvaluator evaluator(character, some_points(character));
+  const Freedoms all = all_freedoms(character);
+  Eigen::MatrixXd analytic;
+  evaluator.jacobian(pose, all, analytic);
+  ASSERT_TRUE(analytic.allFinite());
+  const double step = 1e-5, scale = std::max(1e-3, analytic.cwiseAbs().maxCoeff());
+  PointsD up, down;
+  for (Eigen::Index c = 0; c < all.column_count(); ++c) {
+    evaluator.positions(moved(character, pose, c, step), up);
+    evaluator.positions(moved(character, pose, c, -step), down);
+    const PointsD slope = (up - down) / (2 * step);
+    for (Eigen::Index p = 0; p < slope.rows(); ++p)
+      ASSERT_LT((slope.row(p).transpose() - analytic.block<3, 1>(3 * p, c)).norm(), 1e-7 * scale)
+          << "point " << p << ", column " << c;
+  }
+}
+
+TEST(PointEvaluator, InvalidInputs) {
+  const Character character = test::random_rig(1);
+  EXPECT_THAT(error_of([&] { PointEvaluator(character, {at_vertex(9, 0)}); }),
+              HasSubstr("point 0: is on part 9"));
+  EXPECT_THAT(error_of([&] {
+                PointEvaluator(character, {at_vertex(0, 0), at_vertex(0, 999)});
+              }),
+              HasSubstr("point 1: is on vertex 999"));
+  EXPECT_THAT(error_of([&] {
+                PointEvaluator(character, {{0, 999, -1, {1, 0, 0}, {0, 1, 2}}});
+              }),
+              HasSubstr("point 0: is on face 999"));
+  EXPECT_THAT(error_of([&] {
+                PointEvaluator(character, {{0, 0, -1, {1, 0, 0}, {0, 1, 7}}});
+              }),
+              HasSubstr("point 0: names corner 7"));
+  EXPECT_THAT(error_of([&] {
+                PointEvaluator(character, {{0, 0, -1, {NAN, 0, 0}, {0, 1, 2}}});
+              }),
+              HasSubstr("not finite"));
+  Character broken = character;
+  broken.parts[0].skin = 5;
+  EXPECT_THAT(error_of([&] { PointEvaluator(broken, {at_vertex(0, 0)}); }), HasSubstr("names skin 5"));
+
+  PointEvaluator evaluator(character, some_points(character));
+  PointsD out;
+  Pose pose = rest_pose(character);
+  pose.locals.pop_back();
+  EXPECT_THAT(error_of([&] { evaluator.positions(pose, out); }), HasSubstr("local transforms"));
+  Eigen::MatrixXd jacobian;
+  EXPECT_THAT(error_of([&] {
+                evaluator.jacobian(rest_pose(character), {{99}, {}}, jacobian);
+              }),
+              HasSubstr("freedoms: name shape 99"));
+  EXPECT_THAT(error_of([&] {
+                evaluator.jacobian(rest_pose(character), {{}, {{99}}}, jacobian);
+              }),
+              HasSubstr("freedoms: name node 99"));
+}
+
+TEST(PointEvaluator, NoPoints) {
+  const Character character = test::random_rig(1);
+  PointEvaluator evaluator(character, {});
+  PointsD out;
+  evaluator.positions(rest_pose(character), out);
+  EXPECT_EQ(out.rows(), 0);
+}
+
+TEST(PointEvaluator, AgreesWithEvaluate) {
+  for (unsigned seed = 0; seed < 20; ++seed) {
+    const Character character = test::random_rig(seed);
+    const Pose pose = test::random_pose(character, seed);
+    const auto points = some_points(character);
+    PointEvaluator evaluator(character, points);
+    PointsD out;
+    evaluator.positions(pose, out);
+    const auto posed = evaluate(character, pose);
+    for (std::size_t p = 0; p < points.size(); ++p) {
+      const Eigen::Vector3d whole =
+          position_of(character.parts[points[p].part].mesh, posed[points[p].part], points[p]);
+      EXPECT_LT((out.row(static_cast<Eigen::Index>(p)).transpose() - whole).norm(), 1e-5) << "seed " << seed;
+    }
+  }
+}
+
+TEST(PointEvaluator, JacobianIsTheSlope) {
+  for (unsigned seed = 0; seed < 8; ++seed) {
+    const Character character = test::random_rig(seed);
+    expect_jacobian(character, rest_pose(character));
+    expect_jacobian(character, test::random_pose(character, seed));
+  }
+}
+
+TEST(PointEvaluator, JointUnderAScaleOfZeroHasASlope) {
+  const Character character = test::random_rig(3);
+  Pose pose = test::random_pose(character, 3);
+  pose.locals[0].scale.y() = 0;
+  pose.locals[1].scale.setZero();
+  expect_jacobian(character, pose);
+}
+
+TEST(PointEvaluator, ShapeRowsAreThePositionsLinearPart) {
+  const Character character = test::random_rig(5);
+  const Pose pose = test::random_pose(character, 5);
+  PointEvaluator evaluator(character, some_points(character));
+  Pose other = pose;
+  other.shape_weights.values.setConstant(-0.7);
+  Eigen::MatrixXd rows;
+  evaluator.shape_rows(pose, rows);
+  PointsD from, to;
+  evaluator.positions(pose, from);
+  evaluator.positions(other, to);
+  const Eigen::VectorXd move = rows * (other.shape_weights.values - pose.shape_weights.values);
+  for (Eigen::Index p = 0; p < from.rows(); ++p)
+    EXPECT_LT((to.row(p) - from.row(p) - move.segment<3>(3 * p).transpose()).norm(), 1e-12);
+}
+
+TEST(PointEvaluator, ShapeWeighedOnOnePartAlone) {
+  const Character character = test::random_rig(5);
+  Pose pose = test::random_pose(character, 5);
+  pose.part_shape_weights.push_back({0, 1, 0.3});
+  expect_jacobian(character, pose);
+}
+
+TEST(PointEvaluator, RealFaceInItsClip) {
+  const std::filesystem::path file =
+      std::filesystem::path(MIEN_SHARED_DATA) / "makehuman/caucasian_male_young.glb";
+  if (!std::filesystem::exists(file)) GTEST_SKIP() << "no shared data";
+  const Character character = load(file);
+  expect_jacobian(character, sample_clip(character, character.clips[0], 7.25));
+}
+
+}  // namespace
+}  // namespace mien

@@ -1,0 +1,118 @@
+#pragma once
+/// Small random characters that use everything an evaluator must handle.
+
+#include <algorithm>
+#include <random>
+#include <string>
+
+#include "mien/character/character.h"
+#include "mien/character/pose.h"
+
+namespace mien::test {
+
+class Random {
+ public:
+  explicit Random(unsigned seed) : engine_(seed) {}
+  double number(double low, double high) {
+    return low + (high - low) * (static_cast<double>(engine_()) / static_cast<double>(engine_.max()));
+  }
+  int index(int count) { return static_cast<int>(engine_() % static_cast<unsigned>(count)); }
+  Eigen::Vector3d vector(double size) {
+    return {number(-size, size), number(-size, size), number(-size, size)};
+  }
+  Eigen::Quaterniond rotation(double most) {
+    return Eigen::Quaterniond(Eigen::AngleAxisd(number(-most, most), vector(1).normalized()));
+  }
+
+ private:
+  std::mt19937 engine_;
+};
+
+inline Part random_part(Random& random, int vertices) {
+  Part part;
+  part.name = "part";
+  part.mesh.positions.resize(vertices, 3);
+  for (int v = 0; v < vertices; ++v) part.mesh.positions.row(v) = random.vector(1).cast<float>();
+  for (int v = 0; v + 2 < vertices; v += 2) part.mesh.faces.push_back({v, v + 1, v + 2});
+  return part;
+}
+
+inline SkinWeights random_skin_weights(Random& random, int vertices, int joints) {
+  SkinWeights weights{{0}, {}, {}};
+  for (int v = 0; v < vertices; ++v) {
+    const int influences = random.index(std::min(joints, 9) + 1);  // none at all is legal
+    float total = 0;
+    for (int i = 0; i < influences; ++i) {
+      weights.joints.push_back(i);
+      weights.weights.push_back(static_cast<float>(random.number(0.1, 1)));
+      total += weights.weights.back();
+    }
+    for (int i = 0; i < influences; ++i) weights.weights.end()[-1 - i] /= total;
+    weights.offsets.push_back(static_cast<int>(weights.joints.size()));
+  }
+  return weights;
+}
+
+inline PartDelta random_delta(Random& random, int part, int vertices) {
+  PartDelta delta{part, {}, {}, {}, {}};
+  for (int v = 0; v < vertices; ++v)
+    if (random.index(3) == 0) delta.vertices.push_back(v);
+  delta.deltas.resize(static_cast<Eigen::Index>(delta.vertices.size()), 3);
+  for (Eigen::Index r = 0; r < delta.deltas.rows(); ++r)
+    delta.deltas.row(r) = random.vector(0.3).cast<float>();
+  return delta;
+}
+
+/// A tree of 6 joints with uneven scales; a skinned part, one held by a node, one in model space; 5 shapes over all
+/// of them. Vertex counts vary with the seed and are no multiples of a block.
+inline Character random_rig(unsigned seed) {
+  Random random(seed + 17);
+  Character character;
+  for (int n = 0; n < 7; ++n) {
+    Node node;
+    node.name = "node" + std::to_string(n);
+    node.parent = n == 0 ? -1 : random.index(n);
+    node.rest = {random.vector(0.5), random.rotation(1), Eigen::Vector3d::Ones() + random.vector(0.2)};
+    character.nodes.push_back(node);
+  }
+  const auto model = model_matrices(character);
+  Skin skin{"skin", {}, {}, true, -1, {}};
+  for (int n = 0; n < 6; ++n) {
+    skin.joints.push_back(n);
+    skin.inverse_bind.push_back(model[n].inverse());
+  }
+  character.skins.push_back(skin);
+  for (int p = 0; p < 3; ++p) {
+    const int vertices = 5 + random.index(60);
+    character.parts.push_back(random_part(random, vertices));
+    if (p == 0) {
+      character.parts[p].skin = 0;
+      character.parts[p].skin_weights = random_skin_weights(random, vertices, 6);
+    }
+  }
+  character.parts[1].node = 6;
+  for (int s = 0; s < 5; ++s) {
+    Shape shape{"shape" + std::to_string(s), {}, 0};
+    for (int p = 0; p < 3; ++p)
+      if (s == 0 || random.index(3) > 0)
+        shape.parts.push_back(
+            random_delta(random, p, static_cast<int>(character.parts[p].mesh.vertex_count())));
+    character.shapes.push_back(shape);
+  }
+  return character;
+}
+
+inline Pose random_pose(const Character& character, unsigned seed) {
+  Random random(seed + 1000);
+  Pose pose = rest_pose(character);
+  for (Eigen::Index s = 0; s < pose.shape_weights.values.size(); ++s)
+    pose.shape_weights.values[s] = random.index(3) == 0 ? 0 : random.number(-0.5, 1.5);
+  for (Transform& local : pose.locals) {
+    local.translation += random.vector(0.2);
+    local.rotation = local.rotation * random.rotation(1.5);
+    local.scale += random.vector(0.1);
+  }
+  return pose;
+}
+
+}  // namespace mien::test
