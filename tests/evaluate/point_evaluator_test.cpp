@@ -159,12 +159,27 @@ TEST(PointEvaluator, JacobianIsTheSlope) {
   }
 }
 
-TEST(PointEvaluator, JointUnderAScaleOfZeroHasASlope) {
-  const Character character = test::random_rig(3);
-  Pose pose = test::random_pose(character, 3);
+/// Under joints that flatten and crush what is below them.
+Pose crushed(const Character& character) {
+  Pose pose = test::random_pose(character, 4);
   pose.locals[0].scale.y() = 0;
   pose.locals[1].scale.setZero();
-  expect_jacobian(character, pose);
+  return pose;
+}
+
+TEST(PointEvaluator, JointUnderAScaleOfZeroHasASlope) {
+  const Character character = test::random_rig(4);
+  expect_jacobian(character, crushed(character));
+}
+
+TEST(PointEvaluator,
+     DualQuaternionsUnderAScaleOfZeroStayFinite) {  // a crushed joint's rotation is not determined
+  Character character = test::random_rig(4);
+  character.skins[0].method = SkinningMethod::dual_quaternion;
+  PointEvaluator evaluator(character, some_points(character));
+  Eigen::MatrixXd jacobian;
+  evaluator.jacobian(crushed(character), all_freedoms(character), jacobian);
+  EXPECT_TRUE(jacobian.allFinite());
 }
 
 TEST(PointEvaluator, ShapeRowsAreThePositionsLinearPart) {

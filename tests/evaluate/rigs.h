@@ -64,7 +64,7 @@ inline PartDelta random_delta(Random& random, int part, int vertices) {
 }
 
 /// A tree of 6 joints with uneven scales; a skinned part, one held by a node, one in model space; 5 shapes over all
-/// of them. Vertex counts vary with the seed and are no multiples of a block.
+/// of them. Odd seeds skin by dual quaternions. Vertex counts vary with the seed and are no multiples of a block.
 inline Character random_rig(unsigned seed) {
   Random random(seed + 17);
   Character character;
@@ -81,6 +81,7 @@ inline Character random_rig(unsigned seed) {
     skin.joints.push_back(n);
     skin.inverse_bind.push_back(model[n].inverse());
   }
+  if (seed % 2 == 1) skin.method = SkinningMethod::dual_quaternion;
   character.skins.push_back(skin);
   for (int p = 0; p < 3; ++p) {
     const int vertices = 5 + random.index(60);

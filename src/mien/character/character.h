@@ -42,6 +42,9 @@ struct Node {
       carried;  ///< JSON object text of members that mien only carries ("extras", "extensions", "camera")
 };
 
+/// How the motions of a vertex's joints are blended: their matrices, or the dual quaternions of their rigid parts.
+enum class SkinningMethod { linear_blend, dual_quaternion };
+
 /// A list of joints that parts are bound to.
 struct Skin {
   std::string name;
@@ -51,6 +54,7 @@ struct Skin {
   bool has_inverse_bind = true;  ///< false: the file had none (they are identity then, as glTF says)
   int skeleton = -1;             ///< node index of the common root as the file named it, -1: not named
   std::string carried;
+  SkinningMethod method = SkinningMethod::linear_blend;
 };
 
 /// Any number of (joint, skin weight) pairs a vertex; the skin weights of a vertex sum to one.

@@ -4,12 +4,12 @@
 
 #include "mien/core/error.h"
 #include "mien/core/parallel.h"
+#include "mien/deform/dual_quaternion.h"
 
 namespace mien {
-namespace {
 
-void check(const PointsD& positions, const SkinWeights& weights, std::size_t joint_count) {
-  const auto wanted = static_cast<std::size_t>(positions.rows()) + 1;
+void check_skin_weights(Eigen::Index vertices, const SkinWeights& weights, std::size_t joint_count) {
+  const auto wanted = static_cast<std::size_t>(vertices) + 1;
   if (weights.offsets.size() != wanted)
     throw invalid_input("skin weights", "have " + std::to_string(weights.offsets.size()) + " offsets",
                         std::to_string(wanted) + ", one a vertex and the end");
@@ -25,8 +25,6 @@ void check(const PointsD& positions, const SkinWeights& weights, std::size_t joi
       throw invalid_input("skin weights", "name joint " + std::to_string(joint),
                           "a joint from 0 to " + std::to_string(static_cast<int>(joint_count) - 1));
 }
-
-}  // namespace
 
 std::vector<Eigen::Matrix4d> joint_matrices(const Skin& skin, const std::vector<Eigen::Matrix4d>& model) {
   if (skin.inverse_bind.size() != skin.joints.size())
@@ -47,7 +45,7 @@ std::vector<Eigen::Matrix4d> joint_matrices(const Skin& skin, const std::vector<
 
 PointsD skin_linear(const PointsD& positions, const SkinWeights& weights,
                     const std::vector<Eigen::Matrix4d>& joints) {
-  check(positions, weights, joints.size());
+  check_skin_weights(positions.rows(), weights, joints.size());
   PointsD moved = positions;
   parallel_for(static_cast<std::size_t>(positions.rows()), 1024, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) {
@@ -63,6 +61,12 @@ PointsD skin_linear(const PointsD& positions, const SkinWeights& weights,
     }
   });
   return moved;
+}
+
+PointsD skin_points(const PointsD& positions, const SkinWeights& weights, const Skin& skin,
+                    const std::vector<Eigen::Matrix4d>& joints) {
+  return skin.method == SkinningMethod::dual_quaternion ? skin_dual_quaternion(positions, weights, joints)
+                                                        : skin_linear(positions, weights, joints);
 }
 
 }  // namespace mien

@@ -1,5 +1,5 @@
 #pragma once
-/// Linear blend skinning with any number of influences.
+/// Skinning with any number of influences.
 
 #include <Eigen/Core>
 #include <vector>
@@ -15,6 +15,10 @@ namespace mien {
 ///            joints
 std::vector<Eigen::Matrix4d> joint_matrices(const Skin& skin, const std::vector<Eigen::Matrix4d>& model);
 
+/// That skin weights are of `vertices` vertices and name joints below `joint_count`.
+///   throws  invalid_input: offsets that do not match, a joint out of range
+void check_skin_weights(Eigen::Index vertices, const SkinWeights& weights, std::size_t joint_count);
+
 /// Each vertex moved by the mean of its joints' matrices, weighted by its skin weights.
 ///   positions  #V x 3, model space, bind pose
 ///   returns    #V x 3, model space. A vertex without influences stays. Skin weights are divided by their
@@ -23,6 +27,10 @@ std::vector<Eigen::Matrix4d> joint_matrices(const Skin& skin, const std::vector<
 ///   cost       one matrix product an influence
 ///   method     Magnenat-Thalmann et al. 1988, as in glTF 2.0
 PointsD skin_linear(const PointsD& positions, const SkinWeights& weights,
+                    const std::vector<Eigen::Matrix4d>& joints);
+
+/// By the method that the skin names: skin_linear, or skin_dual_quaternion of dual_quaternion.h.
+PointsD skin_points(const PointsD& positions, const SkinWeights& weights, const Skin& skin,
                     const std::vector<Eigen::Matrix4d>& joints);
 
 }  // namespace mien

@@ -23,9 +23,9 @@ PointsD to_model_space(const Character& character, const Part& part, const Point
   if (part.skin >= static_cast<int>(character.skins.size()))
     throw invalid_input("part " + part.name, "names skin " + std::to_string(part.skin), "a skin that exists");
   if (part.skin >= 0)
-    return part.skin_weights.empty()
-               ? positions
-               : skin_linear(positions, part.skin_weights, joint_matrices(character.skins[part.skin], model));
+    return part.skin_weights.empty() ? positions
+                                     : skin_points(positions, part.skin_weights, character.skins[part.skin],
+                                                   joint_matrices(character.skins[part.skin], model));
   if (part.node >= static_cast<int>(model.size()))
     throw invalid_input("part " + part.name, "names node " + std::to_string(part.node), "a node that exists");
   return part.node >= 0 ? carry(positions, model[part.node]) : positions;

@@ -2,16 +2,19 @@
 // every vertex once however many points share it. With x the shaped position of a site and M_c what carrier c (a joint)
 // does, the site is at y = sum_c w_c M_c x. For node n, M_c = U exp([w]x) B_c with U = (parent's model matrix) T R, and
 // B_c = (scale of n) (locals between n and the joint) (inverse bind): then dy/dw = -U [sum_c w_c B_c x]x. B_c is walked
-// down from n, not up from the joint by inverses: a scale of zero somewhere does no harm.
+// down from n, not up from the joint by inverses: a scale of zero somewhere does no harm. A site of a dual quaternion
+// skin is at y = rigid(sum_c w_c q_c) sum_c w_c S_c x; the slopes of q_c and S_c come from those of M_c.
 #include "mien/evaluate/point_evaluator.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <numeric>
 #include <string>
 
 #include "mien/core/error.h"
+#include "mien/deform/dual_quaternion.h"
 #include "mien/evaluate/detail/check_pose.h"
 #include "mien/evaluate/detail/joint_chain.h"
 
@@ -26,6 +29,7 @@ struct Site {
   Eigen::Vector3d neutral;
   int delta_begin = 0, delta_end = 0;
   int influence_begin = 0, influence_end = 0;  // none: the site is in model space already
+  bool is_dual_quaternion = false;
 };
 
 struct Delta {
@@ -36,6 +40,12 @@ struct Delta {
 struct Influence {
   int carrier = 0;
   double weight = 1;
+};
+
+/// The blend of a dual quaternion site's influences.
+struct RigidBlend {
+  DualQuaternion sum;
+  Eigen::Matrix3d stretch = Eigen::Matrix3d::Zero();
 };
 
 /// A point is the sum of weight x site over its terms.
@@ -83,15 +93,18 @@ struct PointEvaluator::Impl {
   detail::JointChain chain;
 
   // Of the last pose.
-  Eigen::MatrixXd weights;             // #S x parts
-  Eigen::MatrixXi is_exception;        // #S x parts: the shape weight is the part's own
-  std::vector<Affine> model, carried;  // by link, by carrier
-  PointsD shaped, placed;              // by site
+  Eigen::MatrixXd weights;               // #S x parts
+  Eigen::MatrixXi is_exception;          // #S x parts: the shape weight is the part's own
+  std::vector<Affine> model, carried;    // by link, by carrier
+  std::vector<StretchedMotion> motions;  // by carrier, when a site is of a dual quaternion skin
+  std::vector<DualQuaternion> rigid;
+  PointsD shaped, placed;  // by site
 
   // Of one joint freedom.
   std::vector<char> is_below;  // by link
   std::vector<Affine> below;
-  std::vector<int> column_of_shape;  // #S, -1: not asked for
+  std::vector<std::array<MotionSlope, 6>> slopes;  // by carrier: turns, then shifts
+  std::vector<int> column_of_shape;                // #S, -1: not asked for
 
   void add_point(const Character& character, const SurfacePoint& point,
                  std::map<std::pair<int, int>, int>& known);
@@ -100,11 +113,18 @@ struct PointEvaluator::Impl {
   void add_deltas(const Character& character, const std::map<std::pair<int, int>, int>& known);
   void pose_sites(const Pose& pose);
   void set_weights(const Pose& pose);
+  void split_motions();
+  RigidBlend blend(const Site& site) const;
+  Eigen::Vector3d place(const Site& site, const Eigen::Vector3d& shaped_site) const;
   Eigen::Matrix3d linear_of(const Site& site) const;
   void add_shape_columns(const std::vector<int>& column_of_shape, Eigen::MatrixXd& out) const;
   void walk_below(int link, const Pose& pose);
   void add_joint_columns(const JointFreedom& freedom, const Pose& pose, Eigen::Index column,
                          Eigen::MatrixXd& out);
+  Eigen::Matrix<double, 3, 6> linear_slope(std::size_t site, const Eigen::Matrix3d& turn,
+                                           const Eigen::Matrix3d& shift) const;
+  void set_motion_slopes(const Eigen::Matrix3d& turn, const Eigen::Matrix3d& shift);
+  Eigen::Matrix<double, 3, 6> dual_quaternion_slope(std::size_t site) const;
   void check(const Freedoms& freedoms) const;
 };
 
@@ -134,6 +154,11 @@ int PointEvaluator::Impl::add_site(const Character& character, int part, int ver
   site.influence_begin = static_cast<int>(influences.size());
   add_influences(character, character.parts[part], vertex);
   site.influence_end = static_cast<int>(influences.size());
+  const int skin = character.parts[part].skin;
+  site.is_dual_quaternion = skin >= 0 && site.influence_begin != site.influence_end &&
+                            character.skins[skin].method == SkinningMethod::dual_quaternion;
+  std::stable_sort(influences.begin() + site.influence_begin, influences.end(),
+                   [](const Influence& a, const Influence& b) { return a.weight > b.weight; });
   sites.push_back(site);
   return found->second;
 }
@@ -192,22 +217,59 @@ void PointEvaluator::Impl::pose_sites(const Pose& pose) {
   detail::check_pose(outline, pose);
   set_weights(pose);
   chain.evaluate(outline.nodes, pose, model, carried);
+  if (!motions.empty()) split_motions();
   for (std::size_t i = 0; i < sites.size(); ++i) {
     const Site& site = sites[i];
     Eigen::Vector3d x = site.neutral;
     for (int d = site.delta_begin; d < site.delta_end; ++d)
       x += weights(deltas[d].shape, site.column) * deltas[d].move;
-    Eigen::Vector3d y = Eigen::Vector3d::Zero();
-    for (int k = site.influence_begin; k < site.influence_end; ++k)
-      y += influences[k].weight * (carried[influences[k].carrier] * x);
     const auto row = static_cast<Eigen::Index>(i);
     shaped.row(row) = x;
-    placed.row(row) = site.influence_begin == site.influence_end ? x : y;
+    placed.row(row) = place(site, x);
   }
+}
+
+void PointEvaluator::Impl::split_motions() {
+  for (std::size_t c = 0; c < carried.size(); ++c) {
+    Eigen::Matrix4d matrix = Eigen::Matrix4d::Identity();
+    matrix.topRows<3>() << carried[c].linear, carried[c].origin;
+    motions[c] = split_motion(matrix);
+    rigid[c] = dual_quaternion(motions[c].rotation, motions[c].translation);
+  }
+}
+
+/// The strongest influence of a site comes first: it is the pivot of the signs.
+RigidBlend PointEvaluator::Impl::blend(const Site& site) const {
+  RigidBlend blend;
+  const Eigen::Vector4d pivot = rigid[influences[site.influence_begin].carrier].real;
+  for (int k = site.influence_begin; k < site.influence_end; ++k) {
+    const auto [carrier, weight] = influences[k];
+    const double turned = weight * antipodal_sign(pivot, rigid[carrier].real);
+    blend.sum.real += turned * rigid[carrier].real;
+    blend.sum.dual += turned * rigid[carrier].dual;
+    blend.stretch += weight * motions[carrier].stretch;
+  }
+  return blend;
+}
+
+Eigen::Vector3d PointEvaluator::Impl::place(const Site& site, const Eigen::Vector3d& x) const {
+  if (site.influence_begin == site.influence_end) return x;
+  if (site.is_dual_quaternion) {
+    const RigidBlend blended = blend(site);
+    return rigid_matrix(blended.sum) * (blended.stretch * x).homogeneous();
+  }
+  Eigen::Vector3d y = Eigen::Vector3d::Zero();
+  for (int k = site.influence_begin; k < site.influence_end; ++k)
+    y += influences[k].weight * (carried[influences[k].carrier] * x);
+  return y;
 }
 
 Eigen::Matrix3d PointEvaluator::Impl::linear_of(const Site& site) const {
   if (site.influence_begin == site.influence_end) return Eigen::Matrix3d::Identity();
+  if (site.is_dual_quaternion) {
+    const RigidBlend blended = blend(site);
+    return rigid_matrix(blended.sum).leftCols<3>() * blended.stretch;
+  }
   Eigen::Matrix3d linear = Eigen::Matrix3d::Zero();
   for (int k = site.influence_begin; k < site.influence_end; ++k)
     linear += influences[k].weight * carried[influences[k].carrier].linear;
@@ -247,26 +309,72 @@ void PointEvaluator::Impl::add_joint_columns(const JointFreedom& freedom, const 
   const int parent = chain.links()[link].parent;
   const Eigen::Matrix3d shift = parent < 0 ? Eigen::Matrix3d::Identity() : model[parent].linear;
   const Eigen::Matrix3d turn = shift * pose.locals[freedom.node].rotation.toRotationMatrix();
+  if (!motions.empty()) set_motion_slopes(turn, shift);
   for (const Term& term : terms) {
-    const Site& site = sites[term.site];
-    const Eigen::Vector3d x = shaped.row(term.site);
-    Eigen::Vector3d arm = Eigen::Vector3d::Zero();
-    double share = 0;
-    for (int k = site.influence_begin; k < site.influence_end; ++k) {
-      const detail::Carrier& carrier = chain.carriers()[influences[k].carrier];
-      if (!is_below[carrier.link]) continue;
-      arm += influences[k].weight * (below[carrier.link] * (carrier.inverse_bind * x));
-      share += influences[k].weight;
-    }
-    if (share == 0) continue;
+    const auto site = static_cast<std::size_t>(term.site);
+    const Eigen::Matrix<double, 3, 6> slope =
+        term.weight *
+        (sites[site].is_dual_quaternion ? dual_quaternion_slope(site) : linear_slope(site, turn, shift));
     auto rows = out.middleRows<3>(3 * term.point);
-    Eigen::Index at = column;
-    if (freedom.rotation) {
-      rows.middleCols<3>(at) -= term.weight * (turn * cross_matrix(arm));
-      at += 3;
-    }
-    if (freedom.translation) rows.middleCols<3>(at) += term.weight * share * shift;
+    if (freedom.rotation) rows.middleCols<3>(column) += slope.leftCols<3>();
+    if (freedom.translation) rows.middleCols<3>(column + 3 * freedom.rotation) += slope.rightCols<3>();
   }
+}
+
+Eigen::Matrix<double, 3, 6> PointEvaluator::Impl::linear_slope(std::size_t index, const Eigen::Matrix3d& turn,
+                                                               const Eigen::Matrix3d& shift) const {
+  const Site& site = sites[index];
+  const Eigen::Vector3d x = shaped.row(static_cast<Eigen::Index>(index));
+  Eigen::Vector3d arm = Eigen::Vector3d::Zero();
+  double share = 0;
+  for (int k = site.influence_begin; k < site.influence_end; ++k) {
+    const detail::Carrier& carrier = chain.carriers()[influences[k].carrier];
+    if (!is_below[carrier.link]) continue;
+    arm += influences[k].weight * (below[carrier.link] * (carrier.inverse_bind * x));
+    share += influences[k].weight;
+  }
+  Eigen::Matrix<double, 3, 6> slope;
+  slope << -turn * cross_matrix(arm), share * shift;
+  return slope;
+}
+
+void PointEvaluator::Impl::set_motion_slopes(const Eigen::Matrix3d& turn, const Eigen::Matrix3d& shift) {
+  for (std::size_t c = 0; c < motions.size(); ++c) {
+    const detail::Carrier& carrier = chain.carriers()[c];
+    if (!is_below[carrier.link]) continue;
+    const Affine arm = below[carrier.link] * carrier.inverse_bind;
+    Eigen::Matrix<double, 3, 4> matrix;
+    for (int axis = 0; axis < 3; ++axis) {
+      matrix << arm.linear, arm.origin;
+      matrix = (turn * cross_matrix(Eigen::Vector3d::Unit(axis)) * matrix).eval();
+      slopes[c][axis] = motion_slope(motions[c], matrix);
+      matrix.setZero();
+      matrix.col(3) = shift.col(axis);
+      slopes[c][3 + axis] = motion_slope(motions[c], matrix);
+    }
+  }
+}
+
+Eigen::Matrix<double, 3, 6> PointEvaluator::Impl::dual_quaternion_slope(std::size_t index) const {
+  const Site& site = sites[index];
+  const Eigen::Vector3d x = shaped.row(static_cast<Eigen::Index>(index));
+  const RigidBlend blended = blend(site);
+  const Eigen::Vector4d pivot = rigid[influences[site.influence_begin].carrier].real;
+  Eigen::Matrix<double, 3, 6> slope;
+  for (int column = 0; column < 6; ++column) {
+    RigidBlend change;
+    for (int k = site.influence_begin; k < site.influence_end; ++k) {
+      const auto [carrier, weight] = influences[k];
+      if (!is_below[chain.carriers()[carrier].link]) continue;
+      const MotionSlope& motion = slopes[carrier][column];
+      const double turned = weight * antipodal_sign(pivot, rigid[carrier].real);
+      change.sum.real += turned * motion.rigid.real;
+      change.sum.dual += turned * motion.rigid.dual;
+      change.stretch += weight * motion.stretch;
+    }
+    slope.col(column) = rigid_slope(blended.sum, change.sum, blended.stretch * x, change.stretch * x);
+  }
+  return slope;
 }
 
 void PointEvaluator::Impl::check(const Freedoms& freedoms) const {
@@ -304,6 +412,12 @@ PointEvaluator::PointEvaluator(const Character& character, const std::vector<Sur
   impl_->is_below.resize(impl_->chain.links().size());
   impl_->below.resize(impl_->chain.links().size());
   impl_->column_of_shape.resize(character.shapes.size());
+  const auto& sites = impl_->sites;
+  if (std::any_of(sites.begin(), sites.end(), [](const Site& site) { return site.is_dual_quaternion; })) {
+    impl_->motions.resize(impl_->chain.carriers().size());
+    impl_->rigid.resize(impl_->chain.carriers().size());
+    impl_->slopes.resize(impl_->chain.carriers().size());
+  }
 }
 
 PointEvaluator::~PointEvaluator() = default;
