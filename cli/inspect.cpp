@@ -54,10 +54,41 @@ json describe_clip(const Clip& clip) {
       {"name", clip.name}, {"seconds", clip.duration()}, {"channels", clip.channels.size()}, {"keys", keys}};
 }
 
+/// Names of things that may be out of range: inspect also shows what is broken.
+template <typename Elements>
+std::string name_at(const Elements& elements, int index) {
+  return index >= 0 && index < static_cast<int>(elements.size()) ? elements[index].name
+                                                                 : fmt::format("number {}", index);
+}
+
+json describe_slider(const Character& character, const Slider& slider) {
+  json stops = json::array();
+  for (const SliderStop& stop : slider.stops)
+    stops.push_back({{"at", stop.at}, {"shape", name_at(character.shapes, stop.shape)}});
+  return {{"name", slider.name},
+          {"minimum", slider.minimum},
+          {"maximum", slider.maximum},
+          {"rest", slider.rest},
+          {"stops", std::move(stops)}};
+}
+
+json describe_corrective(const Character& character, const Corrective& corrective) {
+  constexpr const char* rules[] = {"product", "smallest", "smooth"};
+  json inputs = json::array();
+  for (const CorrectiveInput& input : corrective.inputs)
+    inputs.push_back({{"slider", name_at(character.sliders, input.slider)}, {"at", input.at}});
+  return {{"shape", name_at(character.shapes, corrective.shape)},
+          {"rule", rules[static_cast<int>(corrective.rule)]},
+          {"inputs", std::move(inputs)}};
+}
+
 json describe(const std::string& file, const Character& character) {
   json result = {{"file", file},
                  {"parts", json::array()},
                  {"shapes", json::array()},
+                 {"sliders", json::array()},
+                 {"correctives", json::array()},
+                 {"expressions", json::array()},
                  {"joints", json::array()},
                  {"clips", json::array()},
                  {"materials", json::array()},
@@ -71,6 +102,12 @@ json describe(const std::string& file, const Character& character) {
     influences = std::max(influences, most_influences(character.parts[p].skin_weights));
   }
   for (const Shape& shape : character.shapes) result["shapes"].push_back(shape.name);
+  for (const Slider& slider : character.sliders)
+    result["sliders"].push_back(describe_slider(character, slider));
+  for (const Corrective& corrective : character.correctives)
+    result["correctives"].push_back(describe_corrective(character, corrective));
+  for (const Expression& expression : character.expressions)
+    result["expressions"].push_back({{"name", expression.name}, {"sliders", expression.values.size()}});
   std::set<int> joints;
   for (const Skin& skin : character.skins)
     for (const int joint : skin.joints)
@@ -115,10 +152,40 @@ std::string part_rows(const json& parts) {
   return text;
 }
 
+/// The sliders that are more than a shape's own weight, in words; correctives and expressions.
+std::string slider_rows(const json& result) {
+  std::string text = fmt::format("  sliders    {}\n", result["sliders"].size());
+  for (const json& slider : result["sliders"]) {
+    const json& stops = slider["stops"];
+    const double low = slider["minimum"], high = slider["maximum"];
+    if (stops.size() == 1 && stops[0]["shape"] == slider["name"] && stops[0]["at"] == 1 && low == 0 &&
+        high == 1)
+      continue;
+    std::string shown;
+    for (const json& stop : stops)
+      shown += fmt::format("{}{} at {:g}", shown.empty() ? "" : ", ", stop["shape"].get<std::string>(),
+                           stop["at"].get<double>());
+    text += fmt::format("    {} [{:g}, {:g}]: {}\n", slider["name"].get<std::string>(), low, high,
+                        shown.empty() ? "no shape" : shown);
+  }
+  for (const json& corrective : result["correctives"]) {
+    std::string inputs;
+    for (const json& input : corrective["inputs"])
+      inputs += (inputs.empty() ? "" : ", ") + input["slider"].get<std::string>();
+    text += fmt::format("  corrective {}: {} of {}\n", corrective["shape"].get<std::string>(),
+                        corrective["rule"].get<std::string>(), inputs);
+  }
+  for (const json& expression : result["expressions"])
+    text += fmt::format("  expression {}: {} sliders\n", expression["name"].get<std::string>(),
+                        expression["sliders"].get<int>());
+  return text;
+}
+
 std::string as_text(const json& result) {
   std::string text = result["file"].get<std::string>() + "\n" + part_rows(result["parts"]);
   text += fmt::format("  shapes     {}{}\n", result["shapes"].size(),
                       result["shapes"].empty() ? "" : ": " + joined(result["shapes"]));
+  text += slider_rows(result);
   text += fmt::format("  joints     {}{}\n", result["joints"].size(),
                       result["joints"].empty() ? "" : ": " + joined(result["joints"]));
   for (const json& clip : result["clips"])

@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "command.h"
+#include "mien/character/sliders.h"
 #include "mien/core/error.h"
 #include "mien/evaluate/evaluate.h"
 #include "mien/io/file.h"
@@ -56,7 +57,8 @@ Pose pose_of(const Character& character, const Arguments& arguments) {
   Pose pose = rest_pose(character);
   if (!arguments.clip.empty())
     pose = sample_clip(character, clip_of_name(character, arguments.clip), arguments.time);
-  if (!arguments.weights.empty()) pose.shape_weights = read_weights(arguments.weights, character);
+  if (!arguments.weights.empty())
+    pose.shape_weights = shape_weights(character, read_weights(arguments.weights, character));
   for (const std::string& shape : arguments.shapes) set_shape(character, shape, pose.shape_weights);
   return pose;
 }

@@ -122,6 +122,55 @@ const Case cases[] = {
     {[](Character& c) { c.shapes[0].parts.push_back(c.shapes[0].parts[0]); },
      "shape jawOpen: lists its parts out of order; list each part once, ascending"},
     {[](Character& c) {
+       c.sliders = {{"jaw", 0, 1, 0, {}}, {"jaw", 0, 1, 0, {}}};
+     },
+     "slider jaw: has the name of another slider; give each its own name"},
+    {[](Character& c) {
+       c.sliders = {{"jaw", 1, 1, 0, {}}};
+     },
+     "slider jaw: has no range; give a minimum below a maximum"},
+    {[](Character& c) {
+       c.sliders = {{"jaw", 0, 1, nan_value, {}}};
+     },
+     "slider jaw: has a rest value that is not finite; give a finite number"},
+    {[](Character& c) {
+       c.sliders = {{"jaw", 0, 1, 0, {{1, 0}, {0.5, 0}}}};
+     },
+     "slider jaw: has a stop at 0.500000; stops ascend and none is at 0"},
+    {[](Character& c) {
+       c.sliders = {{"jaw", 0, 1, 0, {{1, 9}}}};
+     },
+     "slider jaw: names shape 9; there are 1"},
+    {[](Character& c) {
+       c.correctives = {{0, CorrectiveRule::product, {}}};
+     },
+     "corrective 0: has no inputs; name the sliders that fire it"},
+    {[](Character& c) {
+       c.correctives = {{0, CorrectiveRule::product, {{3, 1}}}};
+     },
+     "corrective 0: names slider 3; there are 0"},
+    {[](Character& c) {
+       c.sliders = {{"jaw", 0, 1, 0, {}}};
+       c.correctives = {{0, CorrectiveRule::product, {{0, 1}, {0, 1}}}};
+     },
+     "corrective 0: lists slider 0 twice; list each slider once"},
+    {[](Character& c) {
+       c.sliders = {{"jaw", 0, 1, 0, {}}};
+       c.correctives = {{0, CorrectiveRule::product, {{0, 0}}}};
+     },
+     "corrective 0: has an input that is full at 0.000000; give a value other than 0"},
+    {[](Character& c) {
+       c.expressions = {{"grin", {{0, 1}}}};
+     },
+     "expression grin: names slider 0; there are 0"},
+    {[](Character& c) {
+       c.sliders = {{"jaw", 0, 1, 0, {}}, {"lip", 0, 1, 0, {}}};
+       c.expressions = {{"grin", {{1, 1}, {0, 1}}}};
+     },
+     "expression grin: lists its sliders out of order; list each once, ascending"},
+    {[](Character& c) { c.clips[0].channels[0].property = Channel::Property::slider; },
+     "clip talk: channel 0: names slider -1; there are 0"},
+    {[](Character& c) {
        c.clips[0].channels[0].times = {1, 1};
      },
      "clip talk: channel 0: key 1: is not later than the one before it; times must ascend from 0"},

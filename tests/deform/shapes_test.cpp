@@ -25,8 +25,8 @@ Character square() {
   lift.deltas << 0, 0, 1, 0, 0.5f, 2;
   PartDelta slide{0, {3}, Points(1, 3), {}, {}};
   slide.deltas << 4, 0, 0;
-  character.shapes.push_back({"lift", {lift}, 0});
-  character.shapes.push_back({"slide", {slide}, 0});
+  character.shapes.push_back({"lift", {lift}});
+  character.shapes.push_back({"slide", {slide}});
   return character;
 }
 

@@ -39,7 +39,7 @@ Character two_parts() {
   character.nodes = {root, head};
   character.parts = {triangle("alone"), triangle("held")};
   character.parts[1].node = 1;
-  character.shapes.push_back({"lift", {lift(0), lift(1)}, 0});
+  character.shapes.push_back({"lift", {lift(0), lift(1)}});
   return character;
 }
 

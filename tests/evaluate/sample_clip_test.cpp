@@ -4,6 +4,7 @@
 #include <limits>
 #include <numbers>
 
+#include "mien/character/sliders.h"
 #include "mien/core/error.h"
 #include "mien/evaluate/evaluate.h"
 
@@ -18,7 +19,9 @@ Character one_node_one_shape() {
   character.nodes.emplace_back();
   character.nodes[0].name = "jaw";
   character.nodes[0].rest.translation = {7, 8, 9};
-  character.shapes.push_back({"open", {}, 0.25});
+  character.shapes.push_back({"open", {}});
+  complete_sliders(character);
+  character.sliders[0].rest = 0.25;
   return character;
 }
 
@@ -147,6 +150,33 @@ TEST(SampleClip, OnePartsShapeAlone) {
   ASSERT_EQ(pose.part_shape_weights.size(), 1u);
   EXPECT_EQ(pose.part_shape_weights[0].part, 2);
   EXPECT_EQ(pose.part_shape_weights[0].value, 0.5);
+}
+
+TEST(sample_clip, slider_channels_drive_shapes_through_their_stops) {
+  Character character = one_node_one_shape();
+  character.shapes.push_back({"wide", {}});
+  character.sliders = {{"jaw", 0, 1, 0.5, {{0.5, 0}, {1, 1}}}};
+  Channel channel;
+  channel.property = Property::slider;
+  channel.slider = 0;
+  channel.times = {0, 1};
+  channel.values = {0, 1};
+  const Clip clip = clip_of(channel);
+  EXPECT_EQ(sample_clip(character, clip, 0.75).shape_weights.values, Eigen::Vector2d(0.5, 0.5));
+  EXPECT_EQ(sample_rig(character, clip, 0.75).sliders.values[0], 0.75);
+  EXPECT_EQ(sample_rig(character, Clip{}, 0).sliders.values[0], 0.5);
+}
+
+TEST(sample_rig, a_shape_weight_sets_the_slider_that_has_this_shape_alone) {
+  Character character = one_node_one_shape();
+  character.sliders[0].stops[0].at = 2;
+  Channel channel;
+  channel.property = Property::shape_weight;
+  channel.shape = 0;
+  channel.times = {0};
+  channel.values = {0.5};
+  EXPECT_EQ(sample_rig(character, clip_of(channel), 0).sliders.values[0], 1);
+  EXPECT_EQ(sample_clip(character, clip_of(channel), 0).shape_weights.values[0], 0.5);
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "mien/character/character.h"
+#include "mien/character/sliders.h"
 
 namespace mien::test {
 
@@ -118,7 +119,6 @@ inline Character full_character() {
   c.parts = {face, teeth};
   c.shapes.resize(3);
   c.shapes[0].name = "jawOpen";
-  c.shapes[0].rest = 0.25;
   c.shapes[0].parts = {delta(0, {3, 7, 9}, 0.5f), delta(1, {0, 1, 2}, -0.5f)};
   c.shapes[1].name = "smile";
   std::vector<int> all(25);
@@ -126,6 +126,8 @@ inline Character full_character() {
   c.shapes[1].parts = {delta(0, all, 0.01f)};
   c.shapes[1].parts[0].normal_deltas = Points::Constant(25, 3, 0.1f);
   c.shapes[2].name = "nothing";
+  complete_sliders(c);
+  c.sliders[0].rest = 0.25;
   c.shapes[2].parts = {delta(0, {}, 0)};
   Clip clip;
   clip.name = "talk";

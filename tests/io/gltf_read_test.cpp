@@ -132,7 +132,7 @@ TEST(read_gltf, shapes_of_one_name_are_one_shape_and_each_part_keeps_its_order) 
   const Character c = read(gltf);
   ASSERT_EQ(c.shapes.size(), 3u);
   EXPECT_EQ(c.shapes[0].name, "jawOpen");
-  EXPECT_EQ(c.shapes[0].rest, 0.5);
+  EXPECT_EQ(c.sliders[0].rest, 0.5);
   EXPECT_EQ(c.shapes[0].parts.size(), 2u);
   EXPECT_EQ(c.shapes[1].name, "tongueOut");
   EXPECT_EQ(c.shapes[1].parts.at(0).part, 1);

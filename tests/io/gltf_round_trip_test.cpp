@@ -71,6 +71,7 @@ TEST(gltf_round_trip, ngons_seams_and_groups_of_an_obj_come_back) {
   c.shapes.resize(1);
   c.shapes[0].name = "up";
   c.shapes[0].parts = {delta(0, {2, 3}, 1.f)};
+  complete_sliders(c);
   save(c, folder / "strip.glb");
   const Character again = load(folder / "strip.glb");
   test::expect_same_mesh(c.parts[0].mesh, again.parts[0].mesh);

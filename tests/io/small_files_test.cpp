@@ -1,5 +1,6 @@
 #include <gmock/gmock.h>
 
+#include "mien/character/sliders.h"
 #include "mien/io/assemble.h"
 #include "mien/io/landmark_file.h"
 #include "mien/io/load.h"
@@ -29,6 +30,7 @@ Character small_character() {
   c.shapes[0].name = "jawOpen";
   c.shapes[1].name = "mouthSmile_L";
   c.shapes[2].name = "mouthSmile_R";
+  complete_sliders(c);
   return c;
 }
 
@@ -122,7 +124,7 @@ TEST(read_weights, unknown_names_and_other_forms_are_named) {
       {"{}", "w.json: file: has no \"weights\"; give {\"weights\": {NAME: NUMBER}}"},
       {R"({"weights": {"jawOpen": "much"}})", "w.json: weights.jawOpen: is a string; give a number"},
       {R"({"weights": {"mouthSmileR": 1}})",
-       "w.json: shape mouthSmileR: does not exist; name one of the 3 shapes, perhaps mouthSmile_R"},
+       "w.json: slider mouthSmileR: does not exist; name one of the 3 sliders, perhaps mouthSmile_R"},
   };
   for (const auto& [text, expected] : table) {
     const Folder folder;
@@ -134,7 +136,7 @@ TEST(read_weights, unknown_names_and_other_forms_are_named) {
 TEST(read_weights, missing_names_weigh_nothing_and_weights_come_back) {
   const Folder folder;
   const Character c = small_character();
-  const ShapeWeights weights =
+  const SliderValues weights =
       read_weights(folder.write("w.json", R"({"weights": {"mouthSmile_L": 0.4}})"), c);
   EXPECT_EQ(weights.values, Eigen::Vector3d(0, 0.4, 0));
   write_weights(weights, c, folder / "again.json");

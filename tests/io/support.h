@@ -132,11 +132,13 @@ inline void expect_same_mesh(const Mesh& a, const Mesh& b, float uv_tolerance = 
 }
 
 inline void expect_same_shapes(const Character& a, const Character& b) {
+  EXPECT_EQ(a.sliders, b.sliders);
+  EXPECT_EQ(a.correctives, b.correctives);
+  EXPECT_EQ(a.expressions, b.expressions);
   ASSERT_EQ(a.shapes.size(), b.shapes.size());
   for (std::size_t s = 0; s < a.shapes.size(); ++s) {
     SCOPED_TRACE("shape " + a.shapes[s].name);
     EXPECT_EQ(a.shapes[s].name, b.shapes[s].name);
-    EXPECT_EQ(a.shapes[s].rest, b.shapes[s].rest);
     ASSERT_EQ(a.shapes[s].parts.size(), b.shapes[s].parts.size());
     for (std::size_t p = 0; p < a.shapes[s].parts.size(); ++p) {
       const PartDelta &da = a.shapes[s].parts[p], &db = b.shapes[s].parts[p];
@@ -161,6 +163,7 @@ inline void expect_same_clips(const Character& a, const Character& b) {
       EXPECT_EQ(ca.node, cb.node);
       EXPECT_EQ(ca.shape, cb.shape);
       EXPECT_EQ(ca.part, cb.part);
+      EXPECT_EQ(ca.slider, cb.slider);
       EXPECT_EQ(ca.interpolation, cb.interpolation);
       EXPECT_EQ(ca.times, cb.times);
       EXPECT_EQ(ca.values, cb.values);

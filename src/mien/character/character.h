@@ -16,6 +16,7 @@
 #include <string_view>
 #include <vector>
 
+#include "mien/character/slider.h"
 #include "mien/geometry/mesh.h"
 
 namespace mien {
@@ -90,8 +91,7 @@ struct PartDelta {
 struct Shape {
   std::string name;
   std::vector<PartDelta>
-      parts;        ///< ascending by part; an entry with no vertices: the file lists the shape there
-  double rest = 0;  ///< shape weight when nothing is animated
+      parts;  ///< ascending by part; an entry with no vertices: the file lists the shape there
 };
 
 enum class Interpolation { step, linear, cubic_spline };
@@ -99,16 +99,19 @@ enum class Interpolation { step, linear, cubic_spline };
 /// One animated property. Values are interleaved by key; a cubic spline has (in-tangent, value, out-tangent)
 /// a key.
 struct Channel {
-  enum class Property { translation, rotation, scale, shape_weight };
+  enum class Property { translation, rotation, scale, shape_weight, slider };
   Property property = Property::translation;
-  int node = -1;   ///< for translation (3 values), rotation (unit quaternion x, y, z, w) and scale (3)
-  int shape = -1;  ///< for shape_weight (1 value): index into Character::shapes
-  int part = -1;   ///< shape_weight on this part alone; -1: on every part that has the shape
+  int node = -1;    ///< for translation (3 values), rotation (unit quaternion x, y, z, w) and scale (3)
+  int shape = -1;   ///< for shape_weight (1 value): index into Character::shapes
+  int part = -1;    ///< shape_weight on this part alone; -1: on every part that has the shape
+  int slider = -1;  ///< for slider (1 value): index into Character::sliders
   Interpolation interpolation = Interpolation::linear;
   std::vector<float> times;  ///< seconds, strictly ascending
   std::vector<float> values;
   int width() const {
-    return property == Property::rotation ? 4 : property == Property::shape_weight ? 1 : 3;
+    return property == Property::rotation                                       ? 4
+           : property == Property::shape_weight || property == Property::slider ? 1
+                                                                                : 3;
   }
 };
 
@@ -167,7 +170,10 @@ struct Character {
   std::vector<Node> nodes;
   std::vector<Part> parts;
   std::vector<Skin> skins;
-  std::vector<Shape> shapes;  ///< names are unique
+  std::vector<Shape> shapes;            ///< names are unique
+  std::vector<Slider> sliders;          ///< names are unique; `load` gives each undriven shape one
+  std::vector<Corrective> correctives;  ///< shapes that fire with sliders
+  std::vector<Expression> expressions;  ///< names are unique
   std::vector<Clip> clips;
   std::vector<Landmark> landmarks;
   std::vector<LandmarkCurve> curves;

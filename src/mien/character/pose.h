@@ -1,5 +1,5 @@
 #pragma once
-/// A pose: shape weights and local joint transforms at one instant.
+/// A pose: slider values or shape weights, and local joint transforms, at one instant.
 
 #include <vector>
 
@@ -15,12 +15,27 @@ struct ShapeWeights {
       : values(Eigen::VectorXd::Zero(static_cast<Eigen::Index>(count))) {}
 };
 
+/// Slider values by Character::sliders; sliders.h turns them into shape weights.
+struct SliderValues {
+  Eigen::VectorXd values;
+  explicit SliderValues(Eigen::VectorXd v) : values(std::move(v)) {}
+  explicit SliderValues(std::size_t count)
+      : values(Eigen::VectorXd::Zero(static_cast<Eigen::Index>(count))) {}
+};
+
+/// What an animator sets.
+struct RigPose {
+  SliderValues sliders;           ///< #sliders
+  std::vector<Transform> locals;  ///< #N, local transforms of Character::nodes
+};
+
 /// A shape weight on one part alone, in place of the pose's own.
 struct PartShapeWeight {
   int part = 0, shape = 0;
   double value = 0;
 };
 
+/// What the deformers take.
 struct Pose {
   ShapeWeights shape_weights;     ///< #S
   std::vector<Transform> locals;  ///< #N, local transforms of Character::nodes
@@ -28,7 +43,7 @@ struct Pose {
       {};  ///< exceptions: a clip may animate one part's shape alone
 };
 
-/// The pose when nothing is animated: shapes at rest, nodes at rest.
+/// The pose when nothing is animated: sliders and nodes at rest.
 Pose rest_pose(const Character& character);
 
 /// The node's local matrix when its local transform is `local`: the matrix that its file gave (it may shear) while

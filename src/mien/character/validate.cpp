@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <unordered_set>
 
 namespace mien {
@@ -27,6 +28,10 @@ class Validator {
   void check_skin_weights(const Part& part, const std::string& place);
   void check_shapes();
   void check_delta(const PartDelta& delta, const std::string& place);
+  void check_sliders();
+  void check_stops(const Slider& slider, const std::string& place);
+  void check_correctives();
+  void check_expressions();
   void check_clips();
   void check_channel(const Channel& channel, const std::string& place);
   void check_channel_target(const Channel& channel, const std::string& place);
@@ -243,8 +248,6 @@ void Validator::check_shapes() {
     const std::string place = "shape " + shape.name;
     if (!names.insert(shape.name).second)
       add(place, "has the name of another shape", "give each its own name");
-    if (!std::isfinite(shape.rest))
-      add(place, "has a rest weight that is not finite", "give a finite number");
     int before = -1;
     for (const PartDelta& delta : shape.parts) {
       if (delta.part <= before) add(place, "lists its parts out of order", "list each part once, ascending");
@@ -254,7 +257,69 @@ void Validator::check_shapes() {
   }
 }
 
+void Validator::check_stops(const Slider& slider, const std::string& place) {
+  double before = -std::numeric_limits<double>::infinity();
+  for (const SliderStop& stop : slider.stops) {
+    if (!std::isfinite(stop.at) || stop.at == 0 || stop.at <= before)
+      return add(place, "has a stop at " + std::to_string(stop.at), "stops ascend and none is at 0");
+    before = stop.at;
+    if (!in_range(stop.shape, 0, character_.shapes.size(), place, "shape")) return;
+  }
+}
+
+void Validator::check_sliders() {
+  std::unordered_set<std::string> names;
+  for (const Slider& slider : character_.sliders) {
+    const std::string place = "slider " + slider.name;
+    if (!names.insert(slider.name).second)
+      add(place, "has the name of another slider", "give each its own name");
+    if (!std::isfinite(slider.minimum) || !std::isfinite(slider.maximum) ||
+        !(slider.minimum < slider.maximum))
+      add(place, "has no range", "give a minimum below a maximum");
+    if (!std::isfinite(slider.rest))
+      add(place, "has a rest value that is not finite", "give a finite number");
+    check_stops(slider, place);
+  }
+}
+
+void Validator::check_correctives() {
+  for (std::size_t c = 0; c < character_.correctives.size(); ++c) {
+    const Corrective& corrective = character_.correctives[c];
+    const std::string place = "corrective " + text_of(c);
+    in_range(corrective.shape, 0, character_.shapes.size(), place, "shape");
+    if (corrective.inputs.empty()) add(place, "has no inputs", "name the sliders that fire it");
+    std::unordered_set<int> seen;
+    for (const CorrectiveInput& input : corrective.inputs) {
+      if (!in_range(input.slider, 0, character_.sliders.size(), place, "slider")) break;
+      if (!seen.insert(input.slider).second)
+        add(place, "lists slider " + text_of(input.slider) + " twice", "list each slider once");
+      if (!std::isfinite(input.at) || input.at == 0)
+        add(place, "has an input that is full at " + std::to_string(input.at), "give a value other than 0");
+    }
+  }
+}
+
+void Validator::check_expressions() {
+  std::unordered_set<std::string> names;
+  for (const Expression& expression : character_.expressions) {
+    const std::string place = "expression " + expression.name;
+    if (!names.insert(expression.name).second)
+      add(place, "has the name of another expression", "give each its own name");
+    int before = -1;
+    for (const ExpressionValue& entry : expression.values) {
+      if (!in_range(entry.slider, 0, character_.sliders.size(), place, "slider")) break;
+      if (entry.slider <= before) add(place, "lists its sliders out of order", "list each once, ascending");
+      if (!std::isfinite(entry.value)) add(place, "has a value that is not finite", "give finite numbers");
+      before = entry.slider;
+    }
+  }
+}
+
 void Validator::check_channel_target(const Channel& channel, const std::string& place) {
+  if (channel.property == Channel::Property::slider) {
+    in_range(channel.slider, 0, character_.sliders.size(), place, "slider");
+    return;
+  }
   if (channel.property != Channel::Property::shape_weight) {
     in_range(channel.node, 0, character_.nodes.size(), place, "node");
     return;
@@ -332,6 +397,9 @@ std::vector<Problem> Validator::run() {
     check_mesh(part, "part " + (part.name.empty() ? text_of(p) : part.name));
   }
   check_shapes();
+  check_sliders();
+  check_correctives();
+  check_expressions();
   check_clips();
   check_landmarks();
   return std::move(problems_);

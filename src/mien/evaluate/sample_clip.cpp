@@ -3,6 +3,7 @@
 #include <cmath>
 #include <string>
 
+#include "mien/character/sliders.h"
 #include "mien/core/error.h"
 #include "mien/evaluate/evaluate.h"
 
@@ -15,6 +16,23 @@ std::string place_of(const Clip& clip, std::size_t channel) {
   return "clip " + clip.name + ", channel " + std::to_string(channel);
 }
 
+struct Target {
+  const char* kind;
+  int index;
+  std::size_t count;
+};
+
+Target target_of(const Character& character, const Channel& channel) {
+  switch (channel.property) {
+    case Channel::Property::shape_weight:
+      return {"shape ", channel.shape, character.shapes.size()};
+    case Channel::Property::slider:
+      return {"slider ", channel.slider, character.sliders.size()};
+    default:
+      return {"node ", channel.node, character.nodes.size()};
+  }
+}
+
 void check_channel(const Character& character, const Clip& clip, std::size_t index) {
   const Channel& channel = clip.channels[index];
   const std::size_t stride = channel.width() * (channel.interpolation == Interpolation::cubic_spline ? 3 : 1);
@@ -23,12 +41,9 @@ void check_channel(const Character& character, const Clip& clip, std::size_t ind
     throw invalid_input(
         place_of(clip, index), "has " + std::to_string(channel.values.size()) + " values",
         std::to_string(channel.times.size() * stride) + ", " + std::to_string(stride) + " a key");
-  const bool weighs = channel.property == Channel::Property::shape_weight;
-  const int target = weighs ? channel.shape : channel.node;
-  const std::size_t count = weighs ? character.shapes.size() : character.nodes.size();
+  const auto [kind, target, count] = target_of(character, channel);
   if (target < 0 || static_cast<std::size_t>(target) >= count)
-    throw invalid_input(place_of(clip, index),
-                        std::string("animates ") + (weighs ? "shape " : "node ") + std::to_string(target),
+    throw invalid_input(place_of(clip, index), std::string("animates ") + kind + std::to_string(target),
                         "one from 0 to " + std::to_string(static_cast<int>(count) - 1));
 }
 
@@ -70,42 +85,68 @@ Value sample_channel(const Channel& channel, double seconds) {
   return from + u * (to - from);
 }
 
-void set_shape_weight(const Channel& channel, double value, Pose& pose) {
-  if (channel.part < 0)
-    pose.shape_weights.values[channel.shape] = value;
-  else
-    pose.part_shape_weights.push_back({channel.part, channel.shape, value});
+void apply(const Channel& channel, const Value& value, std::vector<Transform>& locals) {
+  if (channel.property == Channel::Property::translation)
+    locals[channel.node].translation = value.head<3>();
+  else if (channel.property == Channel::Property::rotation)
+    locals[channel.node].rotation = Eigen::Quaterniond(value[3], value[0], value[1], value[2]).normalized();
+  else if (channel.property == Channel::Property::scale)
+    locals[channel.node].scale = value.head<3>();
 }
 
-void apply(const Channel& channel, const Value& value, Pose& pose) {
-  switch (channel.property) {
-    case Channel::Property::translation:
-      pose.locals[channel.node].translation = value.head<3>();
-      break;
-    case Channel::Property::rotation:
-      pose.locals[channel.node].rotation =
-          Eigen::Quaterniond(value[3], value[0], value[1], value[2]).normalized();
-      break;
-    case Channel::Property::scale:
-      pose.locals[channel.node].scale = value.head<3>();
-      break;
-    case Channel::Property::shape_weight:
-      set_shape_weight(channel, value[0], pose);
-      break;
+/// Every channel's value at `seconds`, in order, checked.
+std::vector<Value> sample_channels(const Character& character, const Clip& clip, double seconds) {
+  if (!std::isfinite(seconds))
+    throw invalid_input("clip " + clip.name, "is asked at a time that is not finite");
+  std::vector<Value> values;
+  for (std::size_t c = 0; c < clip.channels.size(); ++c) {
+    check_channel(character, clip, c);
+    values.push_back(sample_channel(clip.channels[c], seconds));
   }
+  return values;
+}
+
+/// Sliders and nodes; shape weights aside.
+RigPose rig_of(const Character& character, const Clip& clip, const std::vector<Value>& values) {
+  RigPose rig = rest_rig_pose(character);
+  for (std::size_t c = 0; c < values.size(); ++c) {
+    const Channel& channel = clip.channels[c];
+    if (channel.property == Channel::Property::slider)
+      rig.sliders.values[channel.slider] = values[c][0];
+    else
+      apply(channel, values[c], rig.locals);
+  }
+  return rig;
 }
 
 }  // namespace
 
 Pose sample_clip(const Character& character, const Clip& clip, double seconds) {
-  if (!std::isfinite(seconds))
-    throw invalid_input("clip " + clip.name, "is asked at a time that is not finite");
-  Pose pose = rest_pose(character);
-  for (std::size_t c = 0; c < clip.channels.size(); ++c) {
-    check_channel(character, clip, c);
-    apply(clip.channels[c], sample_channel(clip.channels[c], seconds), pose);
+  const std::vector<Value> values = sample_channels(character, clip, seconds);
+  Pose pose = pose_of(character, rig_of(character, clip, values));
+  for (std::size_t c = 0; c < values.size(); ++c) {
+    const Channel& channel = clip.channels[c];
+    if (channel.property != Channel::Property::shape_weight) continue;
+    if (channel.part < 0)
+      pose.shape_weights.values[channel.shape] = values[c][0];
+    else
+      pose.part_shape_weights.push_back({channel.part, channel.shape, values[c][0]});
   }
   return pose;
+}
+
+RigPose sample_rig(const Character& character, const Clip& clip, double seconds) {
+  const std::vector<Value> values = sample_channels(character, clip, seconds);
+  RigPose rig = rig_of(character, clip, values);
+  for (std::size_t c = 0; c < values.size(); ++c) {
+    const Channel& channel = clip.channels[c];
+    if (channel.property != Channel::Property::shape_weight || channel.part >= 0) continue;
+    for (std::size_t s = 0; s < character.sliders.size(); ++s)
+      if (const auto& stops = character.sliders[s].stops;
+          stops.size() == 1 && stops[0].shape == channel.shape)
+        rig.sliders.values[static_cast<Eigen::Index>(s)] = values[c][0] * stops[0].at;
+  }
+  return rig;
 }
 
 }  // namespace mien

@@ -7,6 +7,8 @@
 #include <map>
 #include <string>
 
+#include "mien/character/sliders.h"
+#include "mien/character/whole_faces.h"
 #include "mien/core/error.h"
 #include "mien/core/parallel.h"
 #include "mien/io/load.h"
@@ -42,15 +44,9 @@ Shape shape_of(const Mesh& neutral, const std::filesystem::path& path, double th
   const PointsD displacement = face.positions.cast<double>() - neutral.positions.cast<double>();
   const double diagonal = bounding_box(neutral.positions).diagonal();
   check_same_order(displacement, diagonal, path);
-  PartDelta delta;
-  for (Eigen::Index v = 0; v < displacement.rows(); ++v)
-    if (displacement.row(v).norm() > threshold * diagonal) delta.vertices.push_back(static_cast<int>(v));
-  delta.deltas.resize(static_cast<Eigen::Index>(delta.vertices.size()), 3);
-  for (std::size_t k = 0; k < delta.vertices.size(); ++k)
-    delta.deltas.row(k) = displacement.row(delta.vertices[k]).cast<float>();
   Shape shape;
   shape.name = path.stem().string();
-  shape.parts.push_back(std::move(delta));
+  shape.parts.push_back(delta_of(0, neutral.positions, face.positions, threshold * diagonal));
   return shape;
 }
 
@@ -90,6 +86,7 @@ Character assemble(const std::filesystem::path& neutral, std::span<const std::fi
     });
   }
   report_progress(options.progress, "read shapes", 1);
+  complete_sliders(character);
   return character;
 }
 

@@ -96,7 +96,7 @@ void SceneWriter::write() {
   is_joint_.assign(count, false);
   for (const Clip& clip : character_.clips)
     for (const Channel& channel : clip.channels)
-      if (channel.property != Channel::Property::shape_weight) animated_[channel.node] = true;
+      if (channel.node >= 0) animated_[channel.node] = true;
   for (const Skin& skin : character_.skins)
     for (const int joint : skin.joints) is_joint_[joint] = true;
   for (std::size_t n = 0; n < count; ++n) {
@@ -281,11 +281,12 @@ void write_extension_lists(const Character& character, const GltfBuilder& builde
           names->insert(name.get<std::string>());
   const Json vendor = detail::vendor_root(character);
   if (!vendor.empty()) root["extensions"][detail::vendor_extension] = vendor;
-  bool on_mesh = false;
-  for (const Json& mesh : root["meshes"])
-    on_mesh =
-        on_mesh || (mesh.contains("extensions") && mesh["extensions"].contains(detail::vendor_extension));
-  if (on_mesh || !vendor.empty()) used.insert(detail::vendor_extension);
+  bool within = false;
+  for (const char* list : {"meshes", "animations"})
+    for (const Json& element : root.value(list, Json::array()))
+      within = within ||
+               (element.contains("extensions") && element["extensions"].contains(detail::vendor_extension));
+  if (within || !vendor.empty()) used.insert(detail::vendor_extension);
   if (builder.compressed_any()) {
     used.insert("EXT_meshopt_compression");
     required.insert("EXT_meshopt_compression");
@@ -383,8 +384,8 @@ Character read_gltf(const std::filesystem::path& path) {
     detail::read_skins(document, character);
     detail::read_appearance(document, character);
     const std::vector<detail::PartSource> sources = detail::read_parts(document, character);
-    detail::read_clips(document, sources, character);
     detail::read_vendor(document, sources, character);
+    detail::read_clips(document, sources, character);
     Json carried = detail::carried_json(
         document.root().others({"accessors", "bufferViews", "buffers", "nodes", "meshes", "skins",
                                 "animations", "materials", "textures", "samplers", "images"}),

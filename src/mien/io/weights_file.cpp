@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "mien/character/sliders.h"
 #include "mien/core/error.h"
 #include "mien/io/detail/json.h"
 #include "mien/io/file.h"
@@ -34,23 +35,36 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
   return row.back();
 }
 
+/// The one of `elements` (shapes, sliders) whose name is most like `name`, as an error.
+template <typename Elements>
+Error no_such(const char* kind, const Elements& elements, std::string_view name) {
+  const std::string_view start = name.substr(0, 100);
+  const std::string place = fmt::format("{} {}", kind, start);
+  if (elements.empty())
+    return invalid_input(place, "does not exist", fmt::format("the character has no {}s", kind));
+  const auto nearest = std::min_element(elements.begin(), elements.end(), [&](const auto& a, const auto& b) {
+    return edit_distance(start, a.name) < edit_distance(start, b.name);
+  });
+  return invalid_input(
+      place, "does not exist",
+      fmt::format("name one of the {} {}s, perhaps {}", elements.size(), kind, nearest->name));
+}
+
 }  // namespace
 
 int shape_index(const Character& character, std::string_view name) {
   const int shape = find_shape(character, name);
-  if (shape >= 0) return shape;
-  const std::string place = fmt::format("shape {}", name.substr(0, 100));
-  if (character.shapes.empty()) throw invalid_input(place, "does not exist", "the character has no shapes");
-  const auto nearest = std::min_element(character.shapes.begin(), character.shapes.end(),
-                                        [&, start = name.substr(0, 100)](const Shape& a, const Shape& b) {
-                                          return edit_distance(start, a.name) < edit_distance(start, b.name);
-                                        });
-  throw invalid_input(
-      place, "does not exist",
-      fmt::format("name one of the {} shapes, perhaps {}", character.shapes.size(), nearest->name));
+  if (shape < 0) throw no_such("shape", character.shapes, name);
+  return shape;
 }
 
-ShapeWeights read_weights(const std::filesystem::path& path, const Character& character) {
+int slider_index(const Character& character, std::string_view name) {
+  const int slider = find_slider(character, name);
+  if (slider < 0) throw no_such("slider", character.sliders, name);
+  return slider;
+}
+
+SliderValues read_weights(const std::filesystem::path& path, const Character& character) {
   try {
     const std::vector<std::uint8_t> bytes = read_file(path);
     const Json json = detail::parse_json({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, "JSON");
@@ -58,28 +72,26 @@ ShapeWeights read_weights(const std::filesystem::path& path, const Character& ch
     if (!root.has("weights"))
       throw io_error("file", "has no \"weights\"", R"(give {"weights": {NAME: NUMBER}})");
     const JsonObject named = root.object("weights");
-    ShapeWeights weights(character.shapes.size());
-    for (const auto& [name, value] : named.json().items()) {
-      const int shape = shape_index(character, name);
-      weights.values[shape] = named.number(name.c_str());
-    }
-    return weights;
+    SliderValues sliders(character.sliders.size());
+    for (const auto& [name, value] : named.json().items())
+      sliders.values[slider_index(character, name)] = named.number(name.c_str());
+    return sliders;
   } catch (const Error& error) {
     throw error.in_file(path.string());
   }
 }
 
-void write_weights(const ShapeWeights& weights, const Character& character,
+void write_weights(const SliderValues& sliders, const Character& character,
                    const std::filesystem::path& path) {
-  if (weights.values.size() != static_cast<Eigen::Index>(character.shapes.size()))
-    throw invalid_input("weights", fmt::format("are {}", weights.values.size()),
-                        fmt::format("the character has {} shapes", character.shapes.size()));
+  if (sliders.values.size() != static_cast<Eigen::Index>(character.sliders.size()))
+    throw invalid_input("weights", fmt::format("are {}", sliders.values.size()),
+                        fmt::format("the character has {} sliders", character.sliders.size()));
   Json named = Json::object();
-  for (std::size_t s = 0; s < character.shapes.size(); ++s) {
-    const double weight = weights.values[static_cast<Eigen::Index>(s)];
-    if (!std::isfinite(weight))
-      throw invalid_input("weight of " + character.shapes[s].name, "is not finite", "give a finite number");
-    if (weight != 0) named[character.shapes[s].name] = weight;
+  for (std::size_t s = 0; s < character.sliders.size(); ++s) {
+    const double value = sliders.values[static_cast<Eigen::Index>(s)];
+    if (!std::isfinite(value))
+      throw invalid_input("weight of " + character.sliders[s].name, "is not finite", "give a finite number");
+    if (value != 0) named[character.sliders[s].name] = value;
   }
   write_file_atomically(path, detail::json_text({{"weights", named}}, 1) + "\n");
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "mien/character/pose.h"
+#include "mien/character/sliders.h"
 #include "mien/core/error.h"
 #include "mien/core/parallel.h"
 #include "mien/evaluate/evaluate.h"
@@ -193,6 +194,9 @@ Clip copy_by_name(const Character& from, const Clip& clip, const Character& to) 
       channel.shape = find_shape(to, from.shapes[static_cast<std::size_t>(channel.shape)].name);
       channel.part = -1;
       if (channel.shape >= 0) copy.channels.push_back(std::move(channel));
+    } else if (channel.property == Channel::Property::slider) {
+      channel.slider = find_slider(to, from.sliders[static_cast<std::size_t>(channel.slider)].name);
+      if (channel.slider >= 0) copy.channels.push_back(std::move(channel));
     } else {
       channel.node = node_named(to, from.nodes[static_cast<std::size_t>(channel.node)].name);
       if (channel.node >= 0) copy.channels.push_back(std::move(channel));

@@ -4,6 +4,7 @@
 #include <array>
 #include <numbers>
 
+#include "mien/character/sliders.h"
 #include "mien/core/error.h"
 #include "mien/sample/detail/character_form.h"
 #include "mien/sample/detail/remesh.h"
@@ -26,6 +27,7 @@ Character make_human() {
   const sample::FaceRegions regions = sample::make_regions(built.head, form.head);
   sample::add_shapes(built, form, regions);
   sample::add_rig(built, form, regions);
+  complete_sliders(built.character);
   sample::add_talking_clip(built.character);
   sample::place(built.character, 0.01, Eigen::Quaterniond::Identity(), Eigen::Vector3d::Zero());
   return std::move(built.character);

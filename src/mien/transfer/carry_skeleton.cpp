@@ -218,7 +218,7 @@ Clip carry_clip(const Character& source, const Clip& clip, const CarriedSkeleton
         dropped.push_back("clip " + clip.name + ": shape " + source.shapes[at(channel.shape)].name);
         continue;
       }
-    } else {
+    } else if (channel.property != Channel::Property::slider) {
       carried.node = skeleton.node_of[at(channel.node)];
       if (carried.node < 0) {
         dropped.push_back("clip " + clip.name + ": node " + source.nodes[at(channel.node)].name);

@@ -329,6 +329,9 @@ void Run::carry_shapes() {
   report_.deltas = contact.decide(model);
 
   result_.shapes.resize(count);
+  result_.sliders = source_.sliders;
+  result_.correctives = source_.correctives;
+  result_.expressions = source_.expressions;
   const detail::PieceInput pieces = piece_input();
   const std::vector<detail::Ball> balls = options_.method == TransferMethod::thesis
                                               ? std::vector<detail::Ball>()

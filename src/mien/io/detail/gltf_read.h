@@ -19,7 +19,9 @@ void read_skins(GltfDocument& document, Character& character);
 void read_appearance(GltfDocument& document, Character& character);
 std::vector<PartSource> read_parts(GltfDocument& document, Character& character);
 void read_clips(GltfDocument& document, const std::vector<PartSource>& sources, Character& character);
-/// N-gons, seams, groups, landmarks and curves from the vendor extension.
+/// Sliders, correctives and expressions from the file's vendor extension, in place of one slider a shape.
+void read_sliders(const JsonObject& vendor, Character& character);
+/// N-gons, seams, groups, landmarks and curves from the vendor extension; sliders too.
 void read_vendor(GltfDocument& document, const std::vector<PartSource>& sources, Character& character);
 
 /// One mesh as the file holds it: its surface, its influences and its morph targets.

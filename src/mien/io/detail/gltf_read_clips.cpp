@@ -2,8 +2,10 @@
 
 #include <algorithm>
 
+#include "mien/character/sliders.h"
 #include "mien/core/error.h"
 #include "mien/io/detail/gltf_read.h"
+#include "mien/io/detail/gltf_write.h"
 
 namespace mien::detail {
 namespace {
@@ -26,6 +28,7 @@ class ClipReader {
  private:
   void read_channel(const JsonObject& channel, const std::vector<JsonObject>& samplers, Clip& clip);
   void read_transform(Channel channel, const JsonObject& sampler, Clip& clip);
+  void read_vendor(const JsonObject& animation, Clip& clip);
   void read_weights(const Channel& channel, const JsonObject& sampler, Clip& clip);
   std::size_t accessors() const { return document_.count("accessors"); }
 
@@ -39,8 +42,39 @@ Clip ClipReader::read(const JsonObject& animation) {
   clip.name = animation.text_or("name", "");
   const std::vector<JsonObject> samplers = animation.objects("samplers");
   for (const JsonObject& channel : animation.objects("channels")) read_channel(channel, samplers, clip);
-  clip.carried = animation.others({"name", "samplers", "channels"});
+  read_vendor(animation, clip);
+  Json carried = carried_json(animation.others({"name", "samplers", "channels"}), animation.place());
+  if (carried.contains("extensions") && carried["extensions"].is_object()) {
+    carried["extensions"].erase(vendor_extension);
+    if (carried["extensions"].empty()) carried.erase("extensions");
+  }
+  if (!carried.empty()) clip.carried = json_text(carried);
   return clip;
+}
+
+/// The channels of shapes that the clip does not animate itself are there for other programs.
+void ClipReader::read_vendor(const JsonObject& animation, Clip& clip) {
+  if (!animation.has("extensions") || !animation.object("extensions").has(vendor_extension)) return;
+  const JsonObject vendor = animation.object("extensions").object(vendor_extension);
+  if (vendor.has("shapes")) {
+    const std::vector<std::string> own = vendor.texts("shapes");
+    std::erase_if(clip.channels, [&](const Channel& channel) {
+      return channel.property == Channel::Property::shape_weight &&
+             std::find(own.begin(), own.end(), character_.shapes[channel.shape].name) == own.end();
+    });
+  }
+  for (const JsonObject& source : vendor.objects("sliders")) {
+    Channel channel;
+    channel.property = Channel::Property::slider;
+    channel.slider = find_slider(character_, source.text("slider"));
+    if (channel.slider < 0)
+      throw io_error(source.place_of("slider"), fmt::format("names {}", source.text("slider").substr(0, 100)),
+                     "name one of the sliders");
+    channel.interpolation = interpolation_of(source);
+    channel.times = document_.floats(source.index("input", accessors()), 1).values;
+    channel.values = document_.floats(source.index("output", accessors()), 1).values;
+    clip.channels.push_back(std::move(channel));
+  }
 }
 
 void ClipReader::read_channel(const JsonObject& source, const std::vector<JsonObject>& samplers, Clip& clip) {

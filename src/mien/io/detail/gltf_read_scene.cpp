@@ -7,6 +7,7 @@
 #include <set>
 #include <unordered_map>
 
+#include "mien/character/sliders.h"
 #include "mien/core/error.h"
 #include "mien/io/detail/gltf_read.h"
 #include "mien/io/detail/uri.h"
@@ -216,7 +217,6 @@ std::vector<PartSource> read_parts(GltfDocument& document, Character& character)
     numbers.emplace(name, static_cast<int>(character.shapes.size()));
     Shape shape;
     shape.name = name;
-    if (const auto found = rest.find(name); found != rest.end()) shape.rest = found->second;
     character.shapes.push_back(std::move(shape));
   }
   for (std::size_t p = 0; p < sources.size(); ++p)
@@ -225,6 +225,9 @@ std::vector<PartSource> read_parts(GltfDocument& document, Character& character)
       targets[p][t].part = static_cast<int>(p);
       character.shapes[sources[p].shapes.back()].parts.push_back(std::move(targets[p][t]));
     }
+  complete_sliders(character);
+  for (Slider& slider : character.sliders)
+    if (const auto found = rest.find(slider.name); found != rest.end()) slider.rest = found->second;
   return sources;
 }
 

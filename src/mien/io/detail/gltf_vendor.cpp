@@ -283,6 +283,7 @@ Json vendor_root(const Character& character) {
     for (const SurfacePoint& point : curve.points) json["points"].push_back(vendor_point(point));
     vendor["curves"].push_back(std::move(json));
   }
+  write_sliders(character, vendor);
   if (!character.name.empty()) vendor["name"] = character.name;
   if (!vendor.empty()) vendor["version"] = 1;
   return vendor;
@@ -305,6 +306,7 @@ void read_vendor(GltfDocument& document, const std::vector<PartSource>& sources,
   if (vendor.integer("version", 1, 1 << 30) > 1)
     throw io_error(vendor.place_of("version"), "is newer than 1", "read it with a newer mien");
   character.name = vendor.text_or("name", "");
+  read_sliders(vendor, character);
   for (const JsonObject& source : vendor.objects("landmarks"))
     character.landmarks.push_back({source.text("name"), read_point(source, sources, character)});
   for (const JsonObject& source : vendor.objects("curves")) {

@@ -25,8 +25,18 @@ SplitMesh split_seams(const Mesh& mesh);
 Json write_meshes(const Character& character, GltfBuilder& builder);
 /// The vendor extension of one mesh: what the glTF arrays do not say about its faces, seams and groups.
 Json vendor_mesh(const Mesh& mesh, const SplitMesh& split, bool normals_computed, GltfBuilder& builder);
-/// The vendor extension of the file: landmarks and curves.
+/// The vendor extension of the file: landmarks, curves and sliders.
 Json vendor_root(const Character& character);
+/// Adds sliders, correctives and expressions to the file's vendor extension unless they are one plain slider a
+/// shape, which every glTF has.
+void write_sliders(const Character& character, Json& vendor);
+/// The clip as other programs see it: slider channels become channels of the shape weights they drive.
+/// Exact for plain sliders; otherwise at every key and 30 times a second.
+Clip with_shape_channels(const Character& character, const Clip& clip);
+/// The value of a one-valued channel at a time.
+double value_at(const Channel& channel, double seconds);
+const char* name_of(Interpolation interpolation);
+
 Json write_animations(const Character& character, const std::vector<int>& node_of_part, GltfBuilder& builder);
 
 /// The runs of faces that become one primitive each.

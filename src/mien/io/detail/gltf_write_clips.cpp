@@ -8,11 +8,11 @@
 #include <string>
 #include <tuple>
 
+#include "mien/character/sliders.h"
 #include "mien/core/error.h"
 #include "mien/io/detail/gltf_write.h"
 
 namespace mien::detail {
-namespace {
 
 const char* name_of(Interpolation interpolation) {
   switch (interpolation) {
@@ -24,6 +24,8 @@ const char* name_of(Interpolation interpolation) {
       return "CUBICSPLINE";
   }
 }
+
+namespace {
 
 const char* path_of(Channel::Property property) {
   switch (property) {
@@ -72,6 +74,14 @@ Sample sample_beside(const Channel& channel, double time, bool from_left) {
   if (from_left && time == *after && channel.interpolation == Interpolation::step) return {key_value(k), 0};
   return sample_segment(channel, k, time);
 }
+
+}  // namespace
+
+double value_at(const Channel& channel, double seconds) {
+  return sample_beside(channel, seconds, false).value;
+}
+
+namespace {
 
 /// The weights channels of one part, which glTF stores as one sampler.
 struct WeightTrack {
@@ -144,17 +154,21 @@ class ClipWriter {
       : character_(character),
         node_of_part_(node_of_part),
         builder_(builder),
+        rest_(shape_weights(character, rest_sliders(character))),
         written_parts_(character.parts.size(), false) {}
   Json write(const Clip& clip);
 
  private:
   bool drives(const Channel& channel, int part) const;
   void write_weights(const Clip& clip, int part);
+  /// The sliders' channels and, where glTF's form animates more, the shapes that the clip itself animates.
+  Json vendor(const Clip& clip) const;
   void add(int node, const char* path, const Channel& keys);
 
   const Character& character_;
   const std::vector<int>& node_of_part_;
   GltfBuilder& builder_;
+  ShapeWeights rest_;
   std::vector<bool> written_parts_;
   Json samplers_ = Json::array(), channels_ = Json::array();
   std::map<std::tuple<int, int, std::string>, std::size_t> sampler_numbers_;
@@ -192,7 +206,7 @@ void ClipWriter::write_weights(const Clip& clip, int part) {
         source = &channel;
     if (source && !first) first = source;
     sources.push_back(source);
-    rest.push_back(character_.shapes[s].rest);
+    rest.push_back(rest_.values[static_cast<Eigen::Index>(s)]);
   }
   if (!first) return;
   WeightTrack track =
@@ -205,7 +219,30 @@ void ClipWriter::write_weights(const Clip& clip, int part) {
   add(node_of_part_[part], "weights", keys);
 }
 
-Json ClipWriter::write(const Clip& clip) {
+Json ClipWriter::vendor(const Clip& clip) const {
+  Json vendor = Json::object();
+  for (const Channel& channel : clip.channels)
+    if (channel.property == Channel::Property::slider && !channel.times.empty())
+      vendor["sliders"].push_back({{"slider", character_.sliders[channel.slider].name},
+                                   {"interpolation", name_of(channel.interpolation)},
+                                   {"input", builder_.add_floats(channel.times, 1, true)},
+                                   {"output", builder_.add_floats(channel.values, 1)}});
+  std::vector<bool> own(character_.shapes.size(), false);
+  for (const Channel& channel : clip.channels)
+    if (channel.property == Channel::Property::shape_weight) own[channel.shape] = true;
+  bool shows_others = false;
+  for (std::size_t s = 0; s < own.size(); ++s)
+    for (const PartDelta& delta : character_.shapes[s].parts)
+      shows_others = shows_others || (!own[s] && written_parts_[delta.part]);
+  if (!shows_others) return vendor;
+  vendor["shapes"] = Json::array();
+  for (std::size_t s = 0; s < own.size(); ++s)
+    if (own[s]) vendor["shapes"].push_back(character_.shapes[s].name);
+  return vendor;
+}
+
+Json ClipWriter::write(const Clip& whole) {
+  const Clip clip = with_shape_channels(character_, whole);
   for (const Channel& channel : clip.channels) {
     if (channel.times.empty()) continue;
     if (channel.property != Channel::Property::shape_weight) {
@@ -222,6 +259,8 @@ Json ClipWriter::write(const Clip& clip) {
   if (!clip.name.empty()) animation["name"] = clip.name;
   animation["samplers"] = std::move(samplers_);
   animation["channels"] = std::move(channels_);
+  if (Json members = vendor(whole); !members.empty())
+    animation["extensions"][vendor_extension] = std::move(members);
   return animation;
 }
 

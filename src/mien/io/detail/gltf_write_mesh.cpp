@@ -5,6 +5,7 @@
 #include <cstring>
 #include <map>
 
+#include "mien/character/sliders.h"
 #include "mien/core/error.h"
 #include "mien/io/detail/gltf_write.h"
 #include "mien/io/detail/skin_table.h"
@@ -92,12 +93,15 @@ Json MeshWriter::write() {
   mesh["name"] = part_.mesh_name.empty() ? part_.name : part_.mesh_name;
   if (!mesh["extras"].is_object()) mesh.erase("extras");
   Json names = Json::array(), weights = Json::array();
-  for (const Shape& shape : character_.shapes)
+  const ShapeWeights rest = shape_weights(character_, rest_sliders(character_));
+  for (std::size_t s = 0; s < character_.shapes.size(); ++s) {
+    const Shape& shape = character_.shapes[s];
     if (std::any_of(shape.parts.begin(), shape.parts.end(),
                     [&](const PartDelta& delta) { return delta.part == part_index_; })) {
       names.push_back(shape.name);
-      weights.push_back(shape.rest);
+      weights.push_back(rest.values[static_cast<Eigen::Index>(s)]);
     }
+  }
   if (!names.empty()) {
     mesh["extras"]["targetNames"] = names;
     mesh["weights"] = weights;

@@ -64,6 +64,9 @@ void keep_holding_nodes(const Character& target, Character& result) {
 Character bare_target(const Character& target, const Pool& pool, bool skinned) {
   Character result = target;
   result.shapes.clear();
+  result.sliders.clear();
+  result.correctives.clear();
+  result.expressions.clear();
   result.clips.clear();
   result.skins.clear();
   for (std::size_t p = 0; p < result.parts.size(); ++p) {
@@ -80,7 +83,7 @@ Character bare_target(const Character& target, const Pool& pool, bool skinned) {
 
 Shape shape_of_target(const Shape& source, const Pool& pool, const Character& character,
                       const PointsD& displacement, double least) {
-  Shape shape{source.name, {}, source.rest};
+  Shape shape{source.name, {}};
   for (std::size_t p = 0; p < character.parts.size(); ++p) {
     const bool in_node = character.parts[p].skin < 0 && character.skins.empty();
     const Eigen::Matrix3d to_part = in_node
