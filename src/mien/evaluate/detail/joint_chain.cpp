@@ -24,7 +24,9 @@ Affine affine(const Eigen::Matrix4d& matrix) {
 Character outline(const Character& character) {
   Character kept;
   kept.nodes = character.nodes;
-  for (const Shape& shape : character.shapes) kept.shapes.push_back({shape.name, {}, shape.rest});
+  for (const Shape& shape : character.shapes) kept.shapes.push_back({shape.name, {}});
+  kept.sliders = character.sliders;
+  kept.correctives = character.correctives;
   return kept;
 }
 
