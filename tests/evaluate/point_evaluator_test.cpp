@@ -7,6 +7,7 @@
 #include <functional>
 
 #include "evaluate/rigs.h"
+#include "mien/character/sliders.h"
 #include "mien/core/error.h"
 #include "mien/evaluate/evaluate.h"
 #include "mien/io/load.h"
@@ -117,11 +118,11 @@ TEST(PointEvaluator, InvalidInputs) {
   EXPECT_THAT(error_of([&] { evaluator.positions(pose, out); }), HasSubstr("local transforms"));
   Eigen::MatrixXd jacobian;
   EXPECT_THAT(error_of([&] {
-                evaluator.jacobian(rest_pose(character), {{99}, {}}, jacobian);
+                evaluator.jacobian(rest_pose(character), {{99}, {}, {}}, jacobian);
               }),
               HasSubstr("freedoms: name shape 99"));
   EXPECT_THAT(error_of([&] {
-                evaluator.jacobian(rest_pose(character), {{}, {{99}}}, jacobian);
+                evaluator.jacobian(rest_pose(character), {{}, {}, {{99}}}, jacobian);
               }),
               HasSubstr("freedoms: name node 99"));
 }
@@ -203,6 +204,41 @@ TEST(PointEvaluator, ShapeWeighedOnOnePartAlone) {
   Pose pose = test::random_pose(character, 5);
   pose.part_shape_weights.push_back({0, 1, 0.3});
   expect_jacobian(character, pose);
+}
+
+TEST(PointEvaluator, SlidersActThroughStopsAndCorrectives) {
+  Character character = test::random_rig(6);
+  character.sliders = {{"open", 0, 1, 0, {{0.5, 0}, {1, 1}}}, {"side", -1, 1, 0, {{-1, 2}, {1, 3}}}};
+  character.correctives = {{4, CorrectiveRule::product, {{0, 1}, {1, 1}}}};
+  RigPose rig{SliderValues(Eigen::Vector2d(0.7, 0.6)), test::random_pose(character, 6).locals};
+  PointEvaluator evaluator(character, some_points(character));
+  PointsD out, same, up, down;
+  evaluator.positions(rig, out);
+  evaluator.positions(pose_of(character, rig), same);
+  EXPECT_EQ(out, same);
+  Eigen::MatrixXd jacobian;
+  evaluator.jacobian(rig, {{}, {1, 0}, {{2}}}, jacobian);
+  ASSERT_EQ(jacobian.cols(), 5);
+  for (int slider : {0, 1}) {
+    RigPose moved = rig;
+    moved.sliders.values[slider] += 1e-5;
+    evaluator.positions(moved, up);
+    moved.sliders.values[slider] -= 2e-5;
+    evaluator.positions(moved, down);
+    for (Eigen::Index p = 0; p < up.rows(); ++p)
+      EXPECT_LT(
+          ((up.row(p) - down.row(p)).transpose() / 2e-5 - jacobian.block<3, 1>(3 * p, 1 - slider)).norm(),
+          1e-8);
+  }
+  EXPECT_THAT(error_of([&] { evaluator.jacobian(rig, {{0}, {}, {}}, jacobian); }), HasSubstr("name shapes"));
+  EXPECT_THAT(error_of([&] {
+                evaluator.jacobian(rig, {{}, {7}, {}}, jacobian);
+              }),
+              HasSubstr("name slider 7"));
+  EXPECT_THAT(error_of([&] {
+                evaluator.jacobian(pose_of(character, rig), {{}, {0}, {}}, jacobian);
+              }),
+              HasSubstr("name sliders"));
 }
 
 TEST(PointEvaluator, RealFaceInItsClip) {

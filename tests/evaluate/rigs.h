@@ -7,6 +7,7 @@
 
 #include "mien/character/character.h"
 #include "mien/character/pose.h"
+#include "mien/character/sliders.h"
 
 namespace mien::test {
 
@@ -93,13 +94,14 @@ inline Character random_rig(unsigned seed) {
   }
   character.parts[1].node = 6;
   for (int s = 0; s < 5; ++s) {
-    Shape shape{"shape" + std::to_string(s), {}, 0};
+    Shape shape{"shape" + std::to_string(s), {}};
     for (int p = 0; p < 3; ++p)
       if (s == 0 || random.index(3) > 0)
         shape.parts.push_back(
             random_delta(random, p, static_cast<int>(character.parts[p].mesh.vertex_count())));
     character.shapes.push_back(shape);
   }
+  complete_sliders(character);
   return character;
 }
 

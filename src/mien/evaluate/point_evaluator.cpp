@@ -9,38 +9,22 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
-#include <numeric>
 #include <string>
 
+#include "mien/character/sliders.h"
 #include "mien/core/error.h"
 #include "mien/deform/dual_quaternion.h"
 #include "mien/evaluate/detail/check_pose.h"
 #include "mien/evaluate/detail/joint_chain.h"
+#include "mien/evaluate/detail/point_sites.h"
 
 namespace mien {
 
 using detail::Affine;
+using detail::Site;
+using detail::Term;
 
 namespace {
-
-struct Site {
-  int column = 0;  // of the weights of its part
-  Eigen::Vector3d neutral;
-  int delta_begin = 0, delta_end = 0;
-  int influence_begin = 0, influence_end = 0;  // none: the site is in model space already
-  bool is_dual_quaternion = false;
-};
-
-struct Delta {
-  int shape = 0;
-  Eigen::Vector3d move;
-};
-
-struct Influence {
-  int carrier = 0;
-  double weight = 1;
-};
 
 /// The blend of a dual quaternion site's influences.
 struct RigidBlend {
@@ -48,10 +32,10 @@ struct RigidBlend {
   Eigen::Matrix3d stretch = Eigen::Matrix3d::Zero();
 };
 
-/// A point is the sum of weight x site over its terms.
-struct Term {
-  int point = 0, site = 0;
-  double weight = 1;
+/// A column of the Jacobian that a shape has a share in.
+struct ShapeColumn {
+  int column = 0;
+  double slope = 1;
 };
 
 Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& v) {
@@ -60,37 +44,13 @@ Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& v) {
   return m;
 }
 
-void check_point(const Character& character, const SurfacePoint& point, std::size_t index) {
-  const std::string place = "point " + std::to_string(index);
-  if (point.part < 0 || point.part >= static_cast<int>(character.parts.size()))
-    throw invalid_input(place, "is on part " + std::to_string(point.part), "a part that exists");
-  const Mesh& mesh = character.parts[point.part].mesh;
-  if (point.face < 0) {
-    if (point.vertex < 0 || point.vertex >= static_cast<int>(mesh.vertex_count()))
-      throw invalid_input(place, "is on vertex " + std::to_string(point.vertex), "a vertex that exists");
-    return;
-  }
-  if (point.face >= static_cast<int>(mesh.faces.size()))
-    throw invalid_input(place, "is on face " + std::to_string(point.face), "a face that exists");
-  const int corners = static_cast<int>(mesh.faces[point.face].size());
-  for (const int corner : point.corners)
-    if (corner < 0 || corner >= corners)
-      throw invalid_input(place, "names corner " + std::to_string(corner), "a corner that its face has");
-  if (!point.barycentric.allFinite())
-    throw invalid_input(place, "has barycentric coordinates that are not finite", "finite numbers");
-}
-
 }  // namespace
 
-struct PointEvaluator::Impl {
+struct PointEvaluator::Impl : detail::PointSites {
+  Impl(const Character& character, const std::vector<SurfacePoint>& points)
+      : PointSites(character, points), outline(detail::outline(character)) {}
+
   Character outline;
-  std::size_t point_count = 0;
-  std::vector<int> parts;  // the parts that have sites: the columns of `weights`
-  std::vector<Site> sites;
-  std::vector<Delta> deltas;
-  std::vector<Influence> influences;
-  std::vector<Term> terms;
-  detail::JointChain chain;
 
   // Of the last pose.
   Eigen::MatrixXd weights;               // #S x parts
@@ -103,21 +63,18 @@ struct PointEvaluator::Impl {
   // Of one joint freedom.
   std::vector<char> is_below;  // by link
   std::vector<Affine> below;
-  std::vector<std::array<MotionSlope, 6>> slopes;  // by carrier: turns, then shifts
-  std::vector<int> column_of_shape;                // #S, -1: not asked for
+  std::vector<std::array<MotionSlope, 6>> slopes;          // by carrier: turns, then shifts
+  std::vector<std::vector<ShapeColumn>> columns_of_shape;  // #S: the columns that a shape weight moves
 
-  void add_point(const Character& character, const SurfacePoint& point,
-                 std::map<std::pair<int, int>, int>& known);
-  int add_site(const Character& character, int part, int vertex, std::map<std::pair<int, int>, int>& known);
-  void add_influences(const Character& character, const Part& part, int vertex);
-  void add_deltas(const Character& character, const std::map<std::pair<int, int>, int>& known);
   void pose_sites(const Pose& pose);
   void set_weights(const Pose& pose);
   void split_motions();
   RigidBlend blend(const Site& site) const;
   Eigen::Vector3d place(const Site& site, const Eigen::Vector3d& shaped_site) const;
   Eigen::Matrix3d linear_of(const Site& site) const;
-  void add_shape_columns(const std::vector<int>& column_of_shape, Eigen::MatrixXd& out) const;
+  void add_shape_columns(Eigen::MatrixXd& out) const;
+  void add_all_joint_columns(const std::vector<JointFreedom>& joints, const Pose& pose, Eigen::Index column,
+                             Eigen::MatrixXd& out);
   void walk_below(int link, const Pose& pose);
   void add_joint_columns(const JointFreedom& freedom, const Pose& pose, Eigen::Index column,
                          Eigen::MatrixXd& out);
@@ -127,79 +84,6 @@ struct PointEvaluator::Impl {
   Eigen::Matrix<double, 3, 6> dual_quaternion_slope(std::size_t site) const;
   void check(const Freedoms& freedoms) const;
 };
-
-void PointEvaluator::Impl::add_point(const Character& character, const SurfacePoint& point,
-                                     std::map<std::pair<int, int>, int>& known) {
-  const int index = static_cast<int>(point_count++);
-  if (point.face < 0) {
-    terms.push_back({index, add_site(character, point.part, point.vertex, known), 1});
-    return;
-  }
-  const auto face = character.parts[point.part].mesh.faces[point.face];
-  for (int k = 0; k < 3; ++k)
-    if (point.barycentric[k] != 0)
-      terms.push_back(
-          {index, add_site(character, point.part, face[point.corners[k]], known), point.barycentric[k]});
-}
-
-int PointEvaluator::Impl::add_site(const Character& character, int part, int vertex,
-                                   std::map<std::pair<int, int>, int>& known) {
-  const auto [found, is_new] = known.try_emplace({part, vertex}, static_cast<int>(sites.size()));
-  if (!is_new) return found->second;
-  const auto column = std::find(parts.begin(), parts.end(), part);
-  Site site;
-  site.column = static_cast<int>(column - parts.begin());
-  if (column == parts.end()) parts.push_back(part);
-  site.neutral = character.parts[part].mesh.positions.row(vertex).cast<double>();
-  site.influence_begin = static_cast<int>(influences.size());
-  add_influences(character, character.parts[part], vertex);
-  site.influence_end = static_cast<int>(influences.size());
-  const int skin = character.parts[part].skin;
-  site.is_dual_quaternion = skin >= 0 && site.influence_begin != site.influence_end &&
-                            character.skins[skin].method == SkinningMethod::dual_quaternion;
-  std::stable_sort(influences.begin() + site.influence_begin, influences.end(),
-                   [](const Influence& a, const Influence& b) { return a.weight > b.weight; });
-  sites.push_back(site);
-  return found->second;
-}
-
-void PointEvaluator::Impl::add_influences(const Character& character, const Part& part, int vertex) {
-  if (part.skin < 0) {
-    if (part.node >= 0) influences.push_back({chain.add_node(character, part.node), 1});
-    return;
-  }
-  const SkinWeights& weights = part.skin_weights;
-  if (weights.empty()) return;
-  if (weights.offsets.size() != part.mesh.vertex_count() + 1)
-    throw invalid_input("part " + part.name,
-                        "has skin weights of " + std::to_string(weights.offsets.size()) + " offsets",
-                        std::to_string(part.mesh.vertex_count() + 1) + ", one a vertex and the end");
-  double total = 0;
-  for (int i = weights.offsets[vertex]; i < weights.offsets[vertex + 1]; ++i) total += weights.weights[i];
-  if (total <= 0) return;
-  for (int i = weights.offsets[vertex]; i < weights.offsets[vertex + 1]; ++i)
-    influences.push_back(
-        {chain.add_joint(character, part.skin, weights.joints[i]), weights.weights[i] / total});
-}
-
-void PointEvaluator::Impl::add_deltas(const Character& character,
-                                      const std::map<std::pair<int, int>, int>& known) {
-  std::vector<std::vector<Delta>> of_site(sites.size());
-  for (std::size_t s = 0; s < character.shapes.size(); ++s)
-    for (const PartDelta& delta : character.shapes[s].parts)
-      for (auto site = known.lower_bound({delta.part, 0});
-           site != known.end() && site->first.first == delta.part; ++site) {
-        const auto at = std::lower_bound(delta.vertices.begin(), delta.vertices.end(), site->first.second);
-        if (at == delta.vertices.end() || *at != site->first.second) continue;
-        const auto row = static_cast<Eigen::Index>(at - delta.vertices.begin());
-        of_site[site->second].push_back({static_cast<int>(s), delta.deltas.row(row).cast<double>()});
-      }
-  for (std::size_t i = 0; i < sites.size(); ++i) {
-    sites[i].delta_begin = static_cast<int>(deltas.size());
-    deltas.insert(deltas.end(), of_site[i].begin(), of_site[i].end());
-    sites[i].delta_end = static_cast<int>(deltas.size());
-  }
-}
 
 void PointEvaluator::Impl::set_weights(const Pose& pose) {
   for (std::size_t p = 0; p < parts.size(); ++p)
@@ -276,14 +160,24 @@ Eigen::Matrix3d PointEvaluator::Impl::linear_of(const Site& site) const {
   return linear;
 }
 
-void PointEvaluator::Impl::add_shape_columns(const std::vector<int>& columns, Eigen::MatrixXd& out) const {
+void PointEvaluator::Impl::add_shape_columns(Eigen::MatrixXd& out) const {
   for (const Term& term : terms) {
     const Site& site = sites[term.site];
     const Eigen::Matrix3d linear = term.weight * linear_of(site);
-    for (int d = site.delta_begin; d < site.delta_end; ++d)
-      if (const int column = columns[deltas[d].shape];
-          column >= 0 && !is_exception(deltas[d].shape, site.column))
-        out.block<3, 1>(3 * term.point, column) += linear * deltas[d].move;
+    for (int d = site.delta_begin; d < site.delta_end; ++d) {
+      if (columns_of_shape[deltas[d].shape].empty() || is_exception(deltas[d].shape, site.column)) continue;
+      const Eigen::Vector3d move = linear * deltas[d].move;
+      for (const auto [column, slope] : columns_of_shape[deltas[d].shape])
+        out.block<3, 1>(3 * term.point, column) += slope * move;
+    }
+  }
+}
+
+void PointEvaluator::Impl::add_all_joint_columns(const std::vector<JointFreedom>& joints, const Pose& pose,
+                                                 Eigen::Index column, Eigen::MatrixXd& out) {
+  for (const JointFreedom& joint : joints) {
+    add_joint_columns(joint, pose, column, out);
+    column += 3 * joint.rotation + 3 * joint.translation;
   }
 }
 
@@ -382,6 +276,11 @@ void PointEvaluator::Impl::check(const Freedoms& freedoms) const {
     if (shape < 0 || shape >= static_cast<int>(outline.shapes.size()))
       throw invalid_input("freedoms", "name shape " + std::to_string(shape),
                           "a shape from 0 to " + std::to_string(static_cast<int>(outline.shapes.size()) - 1));
+  for (const int slider : freedoms.sliders)
+    if (slider < 0 || slider >= static_cast<int>(outline.sliders.size()))
+      throw invalid_input(
+          "freedoms", "name slider " + std::to_string(slider),
+          "a slider from 0 to " + std::to_string(static_cast<int>(outline.sliders.size()) - 1));
   for (const JointFreedom& joint : freedoms.joints)
     if (joint.node < 0 || joint.node >= static_cast<int>(outline.nodes.size()))
       throw invalid_input("freedoms", "name node " + std::to_string(joint.node),
@@ -389,20 +288,13 @@ void PointEvaluator::Impl::check(const Freedoms& freedoms) const {
 }
 
 Eigen::Index Freedoms::column_count() const {
-  auto count = static_cast<Eigen::Index>(shapes.size());
+  auto count = static_cast<Eigen::Index>(shapes.size() + sliders.size());
   for (const JointFreedom& joint : joints) count += 3 * joint.rotation + 3 * joint.translation;
   return count;
 }
 
 PointEvaluator::PointEvaluator(const Character& character, const std::vector<SurfacePoint>& points)
-    : impl_(std::make_unique<Impl>()) {
-  impl_->outline = detail::outline(character);
-  std::map<std::pair<int, int>, int> known;  // (part, vertex) -> site
-  for (std::size_t p = 0; p < points.size(); ++p) {
-    check_point(character, points[p], p);
-    impl_->add_point(character, points[p], known);
-  }
-  impl_->add_deltas(character, known);
+    : impl_(std::make_unique<Impl>(character, points)) {
   const auto shapes = static_cast<Eigen::Index>(character.shapes.size());
   const auto parts = static_cast<Eigen::Index>(impl_->parts.size());
   impl_->weights.resize(shapes, parts);
@@ -411,7 +303,7 @@ PointEvaluator::PointEvaluator(const Character& character, const std::vector<Sur
   impl_->placed.resize(static_cast<Eigen::Index>(impl_->sites.size()), 3);
   impl_->is_below.resize(impl_->chain.links().size());
   impl_->below.resize(impl_->chain.links().size());
-  impl_->column_of_shape.resize(character.shapes.size());
+  impl_->columns_of_shape.resize(character.shapes.size());
   const auto& sites = impl_->sites;
   if (std::any_of(sites.begin(), sites.end(), [](const Site& site) { return site.is_dual_quaternion; })) {
     impl_->motions.resize(impl_->chain.carriers().size());
@@ -436,25 +328,44 @@ void PointEvaluator::positions(const Pose& pose, PointsD& out) {
 
 void PointEvaluator::jacobian(const Pose& pose, const Freedoms& freedoms, Eigen::MatrixXd& out) {
   impl_->check(freedoms);
+  if (!freedoms.sliders.empty()) throw invalid_input("freedoms", "name sliders of a pose", "shapes");
   impl_->pose_sites(pose);
   out.setZero(3 * static_cast<Eigen::Index>(impl_->point_count), freedoms.column_count());
-  std::fill(impl_->column_of_shape.begin(), impl_->column_of_shape.end(), -1);
+  for (auto& columns : impl_->columns_of_shape) columns.clear();
   for (std::size_t s = 0; s < freedoms.shapes.size(); ++s)
-    impl_->column_of_shape[freedoms.shapes[s]] = static_cast<int>(s);
-  impl_->add_shape_columns(impl_->column_of_shape, out);
-  auto column = static_cast<Eigen::Index>(freedoms.shapes.size());
-  for (const JointFreedom& joint : freedoms.joints) {
-    impl_->add_joint_columns(joint, pose, column, out);
-    column += 3 * joint.rotation + 3 * joint.translation;
-  }
+    impl_->columns_of_shape[freedoms.shapes[s]].push_back({static_cast<int>(s), 1});
+  impl_->add_shape_columns(out);
+  impl_->add_all_joint_columns(freedoms.joints, pose, static_cast<Eigen::Index>(freedoms.shapes.size()), out);
+}
+
+void PointEvaluator::positions(const RigPose& rig, PointsD& out) {
+  positions(pose_of(impl_->outline, rig), out);
+}
+
+void PointEvaluator::jacobian(const RigPose& rig, const Freedoms& freedoms, Eigen::MatrixXd& out) {
+  impl_->check(freedoms);
+  if (!freedoms.shapes.empty()) throw invalid_input("freedoms", "name shapes of a rig's pose", "sliders");
+  const Pose pose = pose_of(impl_->outline, rig);
+  const Eigen::MatrixXd slopes = shape_weight_slopes(impl_->outline, rig.sliders);
+  impl_->pose_sites(pose);
+  out.setZero(3 * static_cast<Eigen::Index>(impl_->point_count), freedoms.column_count());
+  for (auto& columns : impl_->columns_of_shape) columns.clear();
+  for (std::size_t c = 0; c < freedoms.sliders.size(); ++c)
+    for (Eigen::Index s = 0; s < slopes.rows(); ++s)
+      if (const double slope = slopes(s, freedoms.sliders[c]); slope != 0)
+        impl_->columns_of_shape[static_cast<std::size_t>(s)].push_back({static_cast<int>(c), slope});
+  impl_->add_shape_columns(out);
+  impl_->add_all_joint_columns(freedoms.joints, pose, static_cast<Eigen::Index>(freedoms.sliders.size()),
+                               out);
 }
 
 void PointEvaluator::shape_rows(const Pose& pose, Eigen::MatrixXd& out) {
   impl_->pose_sites(pose);
   out.setZero(3 * static_cast<Eigen::Index>(impl_->point_count),
               static_cast<Eigen::Index>(impl_->outline.shapes.size()));
-  std::iota(impl_->column_of_shape.begin(), impl_->column_of_shape.end(), 0);
-  impl_->add_shape_columns(impl_->column_of_shape, out);
+  for (std::size_t s = 0; s < impl_->columns_of_shape.size(); ++s)
+    impl_->columns_of_shape[s].assign(1, {static_cast<int>(s), 1});
+  impl_->add_shape_columns(out);
 }
 
 }  // namespace mien

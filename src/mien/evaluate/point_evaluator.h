@@ -18,10 +18,11 @@ struct JointFreedom {
   bool translation = false;
 };
 
-/// What a Jacobian is taken by. Its columns are the shapes in this order (each once), then for each joint its three turns x, y, z
+/// What a Jacobian is taken by. Its columns are the shapes or the sliders in this order (each once), then for each joint its three turns x, y, z
 /// (if any) and its three shifts x, y, z (if any).
 struct Freedoms {
-  std::vector<int> shapes;
+  std::vector<int> shapes;   ///< of a Pose
+  std::vector<int> sliders;  ///< of a RigPose
   std::vector<JointFreedom> joints;
   Eigen::Index column_count() const;
 };
@@ -55,6 +56,12 @@ class PointEvaluator {
   /// differences. A node whose file gave a matrix that shears is differentiated as its translation, rotation and scale.
   /// A shape that the pose weighs on one part alone moves the other parts' points alone.
   void jacobian(const Pose& pose, const Freedoms& freedoms, Eigen::MatrixXd& out);
+
+  /// The same by sliders, through their stops and correctives (shape_weights and shape_weight_slopes of sliders.h, whose
+  /// results are allocated).
+  ///   throws  invalid_input: freedoms that name shapes here, or sliders above
+  void positions(const RigPose& rig, PointsD& out);
+  void jacobian(const RigPose& rig, const Freedoms& freedoms, Eigen::MatrixXd& out);
 
   /// The derivatives by every shape weight. Skinning is affine in the shaped position: the rows are constant for any
   /// shape weights while the joints stay as in `pose`, and `positions` is their linear function.
