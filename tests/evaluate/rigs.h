@@ -41,7 +41,7 @@ inline Part random_part(Random& random, int vertices) {
 inline SkinWeights random_skin_weights(Random& random, int vertices, int joints) {
   SkinWeights weights{{0}, {}, {}};
   for (int v = 0; v < vertices; ++v) {
-    const int influences = random.index(std::min(joints, 9) + 1);  // none at all is legal
+    const int influences = 1 + random.index(std::min(joints, 9));
     float total = 0;
     for (int i = 0; i < influences; ++i) {
       weights.joints.push_back(i);

@@ -1,0 +1,72 @@
+#pragma once
+/// The inner loops of the Evaluator: plain data in, blocks of 16 vertices out, one build for each instruction set.
+///
+/// A block holds its vertices as 16 x, 16 y, 16 z. Its shapes and its joints are lists of its own: an entry of a shape is
+/// 48 deltas, an entry of a joint 16 skin weights, in the same lanes as the vertices.
+
+#include <cstddef>
+#include <cstdint>
+
+namespace mien::detail {
+
+inline constexpr std::size_t lane_count = 16;
+inline constexpr std::size_t block_floats = 3 * lane_count;
+inline constexpr std::size_t bake_width = 8;  ///< frames that a bake takes through one block together
+
+enum class BlockSkin : std::uint8_t { none, linear, dual_quaternion };
+
+/// Views of what `compile_blocks` packed. Entries of block b are [begin[b], begin[b + 1]).
+struct BlockData {
+  const float* neutral = nullptr;              // block_floats a block
+  const std::uint32_t* shape_begin = nullptr;  // blocks + 1
+  const std::uint16_t* shapes = nullptr;       // by shape entry, ascending in a block
+  const float* deltas = nullptr;               // block_floats a shape entry, or
+  const std::int16_t* compact = nullptr;       // the same as multiples of the shape's scale
+  const std::uint64_t* shape_bits = nullptr;   // `words` a block: which shapes it lists
+  std::size_t words = 0;
+  const std::uint32_t* joint_begin = nullptr;  // blocks + 1
+  const std::uint16_t* joints = nullptr;       // carrier by joint entry
+  const float* joint_weights = nullptr;        // 16 a joint entry
+};
+
+/// One pose as the kernels want it.
+struct FrameData {
+  const float* coefficients = nullptr;    // by shape: shape weight, times the scale of compact deltas
+  const std::uint64_t* active = nullptr;  // bits of the shapes that count; null: all
+  const float* matrices = nullptr;        // 12 a carrier: rows of 4
+  const float* rigid = nullptr;           // 8 a carrier: real x, y, z, w, dual x, y, z, w
+  const float* stretches = nullptr;       // 9 a carrier by rows; null: none stretches
+  const float* joint_weights =
+      nullptr;  // of the one block asked for, in place of BlockData's; null: BlockData's
+};
+
+/// A run of blocks with one kind of skin, and where their vertices go.
+struct BlockRun {
+  std::size_t begin = 0, end = 0;
+  BlockSkin skin = BlockSkin::none;
+  float* blocks = nullptr;                 // block b goes to blocks + block_floats b; or, when null,
+  float* rows = nullptr;                   // lane l of block b goes to rows + 3 row[16 b + l],
+  const std::int32_t* row = nullptr;       // -1: nowhere
+  const std::uint8_t* in_a_row = nullptr;  // by block: its 16 rows follow one another
+};
+
+/// `bake_width` frames at once: coefficients are bake_width a shape, the union of active shapes is taken.
+struct BakeFrames {
+  const float* coefficients = nullptr;  // bake_width a shape
+  const std::uint64_t* active = nullptr;
+  const FrameData* frames = nullptr;  // bake_width
+  float* const* rows = nullptr;       // bake_width, as BlockRun::rows; null: the frame is not wanted
+};
+
+struct Kernel {
+  void (*evaluate)(const BlockData&, const FrameData&, const BlockRun&);
+  void (*bake)(const BlockData&, const BakeFrames&, const BlockRun&);
+};
+
+extern const Kernel plain_kernel;
+#if defined(__x86_64__)
+extern const Kernel avx2_kernel;    // AVX2 and FMA
+extern const Kernel avx512_kernel;  // AVX-512 F, BW, DQ, VL
+#endif
+
+}  // namespace mien::detail

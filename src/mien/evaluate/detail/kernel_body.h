@@ -1,0 +1,239 @@
+// The body of every kernel, written on `Lanes`: 16 floats. Each kernel_*.cpp defines MIEN_TARGET (the instruction set of
+// its functions), Lanes and its operations, and then includes this file inside an anonymous namespace. The order of
+// operations on a lane is the same in all of them and in single frames and bakes: where the instruction sets have fused
+// multiply-adds, results are equal bit for bit.
+
+#define MIEN_INLINE static inline __attribute__((always_inline)) MIEN_TARGET
+
+struct Lanes3 {
+  Lanes x, y, z;
+};
+
+MIEN_INLINE void add_entry(const float* deltas, Lanes c, Lanes3& p) {
+  p.x = multiply_add(load(deltas), c, p.x);
+  p.y = multiply_add(load(deltas + 16), c, p.y);
+  p.z = multiply_add(load(deltas + 32), c, p.z);
+}
+
+MIEN_INLINE void add_entry(const std::int16_t* deltas, Lanes c, Lanes3& p) {
+  p.x = multiply_add(load(deltas), c, p.x);
+  p.y = multiply_add(load(deltas + 16), c, p.y);
+  p.z = multiply_add(load(deltas + 32), c, p.z);
+}
+
+template <class Delta>
+MIEN_INLINE void add_all(const BlockData& data, const Delta* deltas, const float* coefficients,
+                         std::size_t block, Lanes3& p) {
+  const std::uint32_t end = data.shape_begin[block + 1];
+  for (std::uint32_t e = data.shape_begin[block]; e < end; ++e)
+    add_entry(deltas + std::size_t{block_floats} * e, all(coefficients[data.shapes[e]]), p);
+}
+
+template <class Delta>
+MIEN_INLINE void add_active(const BlockData& data, const Delta* deltas, const FrameData& frame,
+                            std::size_t block, Lanes3& p) {
+  const std::uint64_t* bits = data.shape_bits + data.words * block;
+  std::uint32_t base = data.shape_begin[block];
+  for (std::size_t w = 0; w < data.words; ++w) {
+    for (std::uint64_t left = bits[w] & frame.active[w]; left; left &= left - 1) {
+      const std::uint64_t below = (left & -left) - 1;
+      const std::uint32_t e = base + static_cast<std::uint32_t>(__builtin_popcountll(bits[w] & below));
+      add_entry(deltas + std::size_t{block_floats} * e, all(frame.coefficients[data.shapes[e]]), p);
+    }
+    base += static_cast<std::uint32_t>(__builtin_popcountll(bits[w]));
+  }
+}
+
+MIEN_INLINE Lanes3 neutral_of(const BlockData& data, std::size_t block) {
+  const float* neutral = data.neutral + block_floats * block;
+  return {load(neutral), load(neutral + 16), load(neutral + 32)};
+}
+
+MIEN_INLINE Lanes3 shaped(const BlockData& data, const FrameData& frame, std::size_t block) {
+  Lanes3 p = neutral_of(data, block);
+  if (data.compact)
+    frame.active ? add_active(data, data.compact, frame, block, p)
+                 : add_all(data, data.compact, frame.coefficients, block, p);
+  else
+    frame.active ? add_active(data, data.deltas, frame, block, p)
+                 : add_all(data, data.deltas, frame.coefficients, block, p);
+  return p;
+}
+
+MIEN_INLINE Lanes row_times(const float* row, const Lanes3& p) {
+  return multiply_add(all(row[0]), p.x,
+                      multiply_add(all(row[1]), p.y, multiply_add(all(row[2]), p.z, all(row[3]))));
+}
+
+MIEN_INLINE const float* weights_of(const BlockData& data, const FrameData& frame, std::size_t block) {
+  return frame.joint_weights ? frame.joint_weights
+                             : data.joint_weights + lane_count * data.joint_begin[block];
+}
+
+/// sum over joints of weight x (matrix p). A block of one joint needs no weights.
+MIEN_INLINE Lanes3 skinned_linear(const BlockData& data, const FrameData& frame, std::size_t block,
+                                  const Lanes3& p) {
+  const std::uint16_t* joint = data.joints + data.joint_begin[block];
+  const std::size_t count = data.joint_begin[block + 1] - data.joint_begin[block];
+  const float* m = frame.matrices + 12 * joint[0];
+  if (count == 1) return {row_times(m, p), row_times(m + 4, p), row_times(m + 8, p)};
+  const float* weights = weights_of(data, frame, block);
+  Lanes w = load(weights);
+  Lanes3 sum{multiply(w, row_times(m, p)), multiply(w, row_times(m + 4, p)),
+             multiply(w, row_times(m + 8, p))};
+  for (std::size_t j = 1; j < count; ++j) {
+    m = frame.matrices + 12 * joint[j];
+    w = load(weights + lane_count * j);
+    sum.x = multiply_add(w, row_times(m, p), sum.x);
+    sum.y = multiply_add(w, row_times(m + 4, p), sum.y);
+    sum.z = multiply_add(w, row_times(m + 8, p), sum.z);
+  }
+  return sum;
+}
+
+MIEN_INLINE Lanes3 stretched(const BlockData& data, const FrameData& frame, std::size_t block,
+                             const Lanes3& p) {
+  const float* weights = weights_of(data, frame, block);
+  Lanes3 sum{all(0), all(0), all(0)};
+  for (std::uint32_t e = data.joint_begin[block]; e < data.joint_begin[block + 1];
+       ++e, weights += lane_count) {
+    const float* s = frame.stretches + 9 * data.joints[e];
+    const Lanes w = magnitude(load(weights));
+    sum.x = multiply_add(
+        w, multiply_add(all(s[0]), p.x, multiply_add(all(s[1]), p.y, multiply(all(s[2]), p.z))), sum.x);
+    sum.y = multiply_add(
+        w, multiply_add(all(s[3]), p.x, multiply_add(all(s[4]), p.y, multiply(all(s[5]), p.z))), sum.y);
+    sum.z = multiply_add(
+        w, multiply_add(all(s[6]), p.x, multiply_add(all(s[7]), p.y, multiply(all(s[8]), p.z))), sum.z);
+  }
+  return sum;
+}
+
+MIEN_INLINE Lanes3 cross(const Lanes3& a, const Lanes3& b) {
+  return {multiply_subtract(a.y, b.z, multiply(a.z, b.y)), multiply_subtract(a.z, b.x, multiply(a.x, b.z)),
+          multiply_subtract(a.x, b.y, multiply(a.y, b.x))};
+}
+
+/// With r and d the blended parts, v the vector part of r: p + 2 (v x (v x p + w p) + w dv - dw v + v x dv) / |r|^2.
+MIEN_INLINE Lanes3 moved_rigidly(const Lanes* r, const Lanes* d, const Lanes3& p) {
+  const Lanes3 v{r[0], r[1], r[2]}, dv{d[0], d[1], d[2]};
+  const Lanes square =
+      multiply_add(r[0], r[0], multiply_add(r[1], r[1], multiply_add(r[2], r[2], multiply(r[3], r[3]))));
+  const Lanes twice = divide(all(2), square);
+  const Lanes3 vp = cross(v, p);
+  const Lanes3 inner{multiply_add(r[3], p.x, vp.x), multiply_add(r[3], p.y, vp.y),
+                     multiply_add(r[3], p.z, vp.z)};
+  const Lanes3 turn = cross(v, inner), shift = cross(v, dv);
+  const Lanes x = multiply_add(r[3], dv.x, multiply_subtract_from(d[3], v.x, add(turn.x, shift.x)));
+  const Lanes y = multiply_add(r[3], dv.y, multiply_subtract_from(d[3], v.y, add(turn.y, shift.y)));
+  const Lanes z = multiply_add(r[3], dv.z, multiply_subtract_from(d[3], v.z, add(turn.z, shift.z)));
+  return {multiply_add(twice, x, p.x), multiply_add(twice, y, p.y), multiply_add(twice, z, p.z)};
+}
+
+MIEN_INLINE Lanes3 skinned_dual_quaternion(const BlockData& data, const FrameData& frame, std::size_t block,
+                                           const Lanes3& p) {
+  const float* weights = weights_of(data, frame, block);
+  Lanes real[4] = {all(0), all(0), all(0), all(0)}, dual[4] = {all(0), all(0), all(0), all(0)};
+  const Lanes3 q = frame.stretches ? stretched(data, frame, block, p) : p;
+  for (std::uint32_t e = data.joint_begin[block]; e < data.joint_begin[block + 1];
+       ++e, weights += lane_count) {
+    const float* joint = frame.rigid + 8 * data.joints[e];
+    const Lanes w = load(weights);
+    for (int k = 0; k < 4; ++k) {
+      real[k] = multiply_add(w, all(joint[k]), real[k]);
+      dual[k] = multiply_add(w, all(joint[4 + k]), dual[k]);
+    }
+  }
+  return moved_rigidly(real, dual, q);
+}
+
+MIEN_INLINE Lanes3 skinned(const BlockData& data, const FrameData& frame, BlockSkin skin, std::size_t block,
+                           const Lanes3& p) {
+  if (skin == BlockSkin::linear) return skinned_linear(data, frame, block, p);
+  if (skin == BlockSkin::dual_quaternion) return skinned_dual_quaternion(data, frame, block, p);
+  return p;
+}
+
+MIEN_INLINE void store_rows(const BlockRun& run, float* rows, std::size_t block, const Lanes3& p) {
+  const std::int32_t* row = run.row + lane_count * block;
+  if (run.in_a_row[block]) {
+    store_interleaved(rows + std::size_t{3} * static_cast<std::size_t>(row[0]), p.x, p.y, p.z);
+    return;
+  }
+  alignas(64) float lanes[block_floats];
+  store_interleaved(lanes, p.x, p.y, p.z);
+  for (std::size_t l = 0; l < lane_count; ++l)
+    if (row[l] >= 0)
+      __builtin_memcpy(rows + 3 * static_cast<std::size_t>(row[l]), lanes + 3 * l, 3 * sizeof(float));
+}
+
+MIEN_TARGET void evaluate(const BlockData& data, const FrameData& frame, const BlockRun& run) {
+  for (std::size_t b = run.begin; b < run.end; ++b) {
+    const Lanes3 p = skinned(data, frame, run.skin, b, shaped(data, frame, b));
+    if (run.blocks) {
+      float* out = run.blocks + block_floats * b;
+      store(out, p.x);
+      store(out + 16, p.y);
+      store(out + 32, p.z);
+    } else {
+      store_rows(run, run.rows, b, p);
+    }
+  }
+}
+
+template <class Delta>
+MIEN_INLINE void bake_entry(const Delta* deltas, const float* coefficients, Lanes3* p, std::size_t begin,
+                            std::size_t end) {
+  const Lanes x = load(deltas), y = load(deltas + 16), z = load(deltas + 32);
+#pragma GCC unroll 8
+  for (std::size_t f = begin; f < end; ++f) {
+    const Lanes c = all(coefficients[f]);
+    p[f].x = multiply_add(x, c, p[f].x);
+    p[f].y = multiply_add(y, c, p[f].y);
+    p[f].z = multiply_add(z, c, p[f].z);
+  }
+}
+
+/// Adds the shapes of one block in the frames [begin, end), as many as the registers hold.
+template <class Delta, std::size_t begin, std::size_t end>
+MIEN_INLINE void bake_shapes(const BlockData& data, const Delta* deltas, const BakeFrames& bake,
+                             std::size_t block, Lanes3* out) {
+  Lanes3 p[bake_width];
+  const Lanes3 neutral = neutral_of(data, block);
+  for (std::size_t f = begin; f < end; ++f) p[f] = neutral;
+  const std::uint64_t* bits = data.shape_bits + data.words * block;
+  std::uint32_t e = data.shape_begin[block];
+  for (std::size_t w = 0; w < data.words; ++w)
+    for (std::uint64_t own = bits[w]; own; own &= own - 1, ++e)
+      if (bake.active[w] & own & -own)
+        bake_entry(deltas + std::size_t{block_floats} * e, bake.coefficients + bake_width * data.shapes[e], p,
+                   begin, end);
+  for (std::size_t f = begin; f < end; ++f) out[f] = p[f];
+}
+
+template <class Delta>
+MIEN_INLINE void bake_block(const BlockData& data, const Delta* deltas, const BakeFrames& bake,
+                            std::size_t block, Lanes3* out) {
+  if constexpr (bake_registers >= 8) {
+    bake_shapes<Delta, 0, 8>(data, deltas, bake, block, out);
+  } else {
+    bake_shapes<Delta, 0, 2>(data, deltas, bake, block, out);
+    bake_shapes<Delta, 2, 4>(data, deltas, bake, block, out);
+    bake_shapes<Delta, 4, 6>(data, deltas, bake, block, out);
+    bake_shapes<Delta, 6, 8>(data, deltas, bake, block, out);
+  }
+}
+
+MIEN_TARGET void bake(const BlockData& data, const BakeFrames& bake, const BlockRun& run) {
+  Lanes3 p[bake_width];
+  for (std::size_t b = run.begin; b < run.end; ++b) {
+    if (data.compact)
+      bake_block(data, data.compact, bake, b, p);
+    else
+      bake_block(data, data.deltas, bake, b, p);
+    for (std::size_t f = 0; f < bake_width; ++f)
+      if (bake.rows[f]) store_rows(run, bake.rows[f], b, skinned(data, bake.frames[f], run.skin, b, p[f]));
+  }
+}
+
+#undef MIEN_INLINE
