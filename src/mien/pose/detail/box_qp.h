@@ -50,6 +50,9 @@ class BoxQp {
   /// #S, of the last solve.
   std::span<const double> change() const { return {x_.data(), static_cast<std::size_t>(sliders_)}; }
 
+  /// #R: g - B x, of the last solve, as exact as the change.
+  std::span<const double> remainder() const { return {y_.data(), static_cast<std::size_t>(rows_)}; }
+
  private:
   struct Event {
     double t, bend;
