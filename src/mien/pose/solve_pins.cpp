@@ -110,6 +110,7 @@ struct PinSolver::Impl {
   Eigen::MatrixXd prior_rows;
   Eigen::VectorXd prior_goal;
   Eigen::VectorXd stiffness, pull, sparse, low, high, low_now, high_now;
+  Eigen::VectorXd least, most;  // the limits of x itself
   Eigen::VectorXd start_coordinates, coordinates, trial_coordinates;
   Eigen::VectorXd rest;  // of the sliders, as a change
   BoxQp qp;
@@ -197,9 +198,11 @@ void PinSolver::Impl::set_limits(const Character& character) {
       column += 3;
     }
   }
+  for (const int slider : options.locked) low[slider] = high[slider] = start_x[slider];
+  least = low;
+  most = high;
   low -= start_x;
   high -= start_x;
-  for (const int slider : options.locked) low[slider] = high[slider] = 0;
 }
 
 void PinSolver::Impl::set_goals() {
@@ -262,8 +265,8 @@ BoxQp::Outcome PinSolver::Impl::solve_program() {
   ++result.solves;
   result.converged &= outcome.converged;
   const std::span<const double> change = qp.change();
-  for (Eigen::Index j = 0; j < next_x.size(); ++j)
-    next_x[j] = start_x[j] + change[static_cast<std::size_t>(j)];
+  for (Eigen::Index j = 0; j < next_x.size(); ++j)  // start + (limit - start) may round past the limit
+    next_x[j] = std::clamp(start_x[j] + change[static_cast<std::size_t>(j)], least[j], most[j]);
   return outcome;
 }
 
@@ -377,7 +380,7 @@ void PinSolver::Impl::run_exclusive() {
     for (const int s : group) away += std::abs(x[s] - start_x[s] - rest[s]) > moved_by;
     if (away <= 1) continue;
     int best = group[0];
-    double least = std::numeric_limits<double>::infinity();
+    double lowest = std::numeric_limits<double>::infinity();
     const Eigen::VectorXd low_before = low_now, high_before = high_now;
     const auto keep = [&](int member) {
       low_now = low_before;
@@ -387,8 +390,8 @@ void PinSolver::Impl::run_exclusive() {
       return run_one();
     };
     for (const int member : group)
-      if (const double value = keep(member); value < least) {
-        least = value;
+      if (const double value = keep(member); value < lowest) {
+        lowest = value;
         best = member;
       }
     keep(best);
