@@ -27,6 +27,8 @@ int main(int argc, char** argv) {
   mien::cli::add_assemble(app, common);
   mien::cli::add_transfer(app, common);
   mien::cli::add_render(app, common);
+  mien::cli::add_pose(app, common);
+  mien::cli::add_attenuate(app, common);
   for (CLI::App* command : app.get_subcommands({})) {
     add_common_flags(*command, common);
     command->parse_complete_callback([&common] { mien::set_thread_count(common.threads); });

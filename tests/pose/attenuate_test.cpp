@@ -62,8 +62,7 @@ TEST(Attenuate, is_the_papers_formula_on_the_change) {
   RigPose tagging = rest_rig_pose(face);
   tagging.sliders.values[2] = 0.3;
   SliderValues moved = tagging.sliders;
-  moved.values[4] = 0.7;
-  moved.values[5] = 0.2;
+  moved.values.setConstant(0.6);
   const std::vector<Tag> tags{tag_at(65), tag_at(66, "y")};
   AttenuateOptions options;
   options.within_limits = false;
@@ -78,7 +77,8 @@ TEST(Attenuate, is_the_papers_formula_on_the_change) {
       tagging.sliders.values +
       (p + result.alpha * q).fullPivLu().solve(p * (moved.values - tagging.sliders.values));
   EXPECT_LT((result.sliders.values - exact).cwiseAbs().maxCoeff(), 1e-6);
-  EXPECT_LT(result.drift, 0.5 * result.unattenuated_drift);
+  EXPECT_LT(result.drift, 0.6 * result.unattenuated_drift);
+  EXPECT_GT(result.unattenuated_drift, 0.01);
 }
 
 TEST(Attenuate, tagging_alone_moves_nothing) {

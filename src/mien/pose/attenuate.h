@@ -34,7 +34,7 @@ struct AttenuateOptions {
 /// or together nothing, leave G singular; each gets 1e-10 of its own diagonal, which keeps it where the user put it.
 ///
 /// Slopes are those of the rig at tagging: exact for plain sliders, to first order for in-betweens and correctives.
-/// One thread at a time.
+/// The character must live as long as the attenuator. One thread at a time.
 class Attenuator {
  public:
   ///   tagging  the pose that tagged coordinates keep
