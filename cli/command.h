@@ -28,6 +28,7 @@ void add_inspect(CLI::App& app, Common& common);
 void add_assemble(CLI::App& app, Common& common);
 void add_transfer(CLI::App& app, Common& common);
 void add_render(CLI::App& app, Common& common);
+void add_landmarks(CLI::App& app, Common& common);
 void add_sample(CLI::App& app, Common& common);
 void add_pose(CLI::App& app, Common& common);
 void add_attenuate(CLI::App& app, Common& common);

@@ -25,6 +25,7 @@ int main(int argc, char** argv) {
   mien::cli::add_sample(app, common);
   mien::cli::add_inspect(app, common);
   mien::cli::add_assemble(app, common);
+  mien::cli::add_landmarks(app, common);
   mien::cli::add_transfer(app, common);
   mien::cli::add_render(app, common);
   mien::cli::add_pose(app, common);

@@ -41,7 +41,7 @@ std::vector<std::string> write_sample(const SampleInfo& info, const fs::path& di
   };
   save(character, path(".glb"));
   if (info.is_target) save(character, path(".obj"));
-  write_landmarks({character.landmarks, character.curves}, character, path(".landmarks.json"));
+  write_landmarks({character.landmarks, character.curves, {}}, character, path(".landmarks.json"));
   return files;
 }
 

@@ -2,16 +2,19 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <optional>
 #include <system_error>
 
 #include "command.h"
+#include "find_landmarks.h"
 #include "mien/core/error.h"
 #include "mien/io/file.h"
 #include "mien/io/landmark_file.h"
 #include "mien/io/load.h"
 #include "mien/report/report.h"
+#include "mien/sample/sample.h"
 
 namespace mien::cli {
 namespace {
@@ -52,11 +55,64 @@ Character load_with_landmarks(const std::string& path, const std::string& landma
     character.landmarks = std::move(set.landmarks);
     character.curves = std::move(set.curves);
   }
-  if (character.landmarks.empty() && character.curves.empty())
-    throw invalid_input("landmarks", "the file has none inside and no landmark file was given",
-                        "--source-landmarks and --target-landmarks with files of named points")
-        .in_file(path);
   return character;
+}
+
+std::size_t marks(const Character& character) {
+  return character.landmarks.size() + character.curves.size();
+}
+
+std::size_t shared_marks(const Character& a, const Character& b) {
+  const auto count = [](const auto& left, const auto& right) {
+    return std::count_if(left.begin(), left.end(), [&](const auto& one) {
+      return std::any_of(right.begin(), right.end(),
+                         [&](const auto& other) { return other.name == one.name; });
+    });
+  };
+  return static_cast<std::size_t>(count(a.landmarks, b.landmarks) + count(a.curves, b.curves));
+}
+
+/// With fewer pairs than this the others are found; with as many, what the user gave is all there is.
+constexpr std::size_t enough_pairs = 12;
+
+/// One side whose landmarks were found, for the report.
+struct FoundSide {
+  std::string file;
+  FoundLandmarks found;
+};
+
+/// Gives `character` the landmarks of `like` in place of what is missing; its own stay.
+void complete(const std::string& file, Character& character, const Character& like,
+              const FindLandmarksOptions& options, std::vector<FoundSide>& sides) {
+  FoundLandmarks found = find_landmarks_of(file, character, like, options);
+  character.landmarks = found.points();
+  for (LandmarkCurve& curve : found.curves)
+    if (std::none_of(character.curves.begin(), character.curves.end(),
+                     [&](const LandmarkCurve& own) { return own.name == curve.name; }))
+      character.curves.push_back(std::move(curve));
+  sides.push_back({file, std::move(found)});
+}
+
+/// Sees to it that both sides have landmarks of the same names: a side that has few or none gets the other's, and where
+/// neither has enough, the source gets the built-in human's first.
+std::vector<FoundSide> find_missing(const Request& request, Character& source, Character& target) {
+  std::vector<FoundSide> sides;
+  if (shared_marks(source, target) >= enough_pairs) return sides;
+  FindLandmarksOptions options;
+  options.progress = request.options.progress;
+  if (marks(source) < enough_pairs && marks(target) >= enough_pairs) {
+    options.given = source.landmarks;
+    complete(request.source, source, target, options, sides);
+    return sides;
+  }
+  if (marks(source) < enough_pairs) {
+    options.given = source.landmarks;
+    complete(request.source, source, make_sample("human"), options, sides);
+    options.like_facing = sides[0].found.facing;
+  }
+  options.given = target.landmarks;
+  complete(request.target, target, source, options, sides);
+  return sides;
 }
 
 nlohmann::json as_json(const TransferReport& report, const std::string& output) {
@@ -115,11 +171,12 @@ void make_folder(const std::filesystem::path& folder) {
 
 void run(Request& request, const Common& common) {
   read_exaggeration(request.exaggerate, request.options);
-  const Character source = load_with_landmarks(request.source, request.source_landmarks);
-  const Character target = load_with_landmarks(request.target, request.target_landmarks);
+  Character source = load_with_landmarks(request.source, request.source_landmarks);
+  Character target = load_with_landmarks(request.target, request.target_landmarks);
   const std::filesystem::path folder = request.report;
   if (!folder.empty()) make_folder(folder);
   request.options.progress = progress_bar(common);
+  const std::vector<FoundSide> found = find_missing(request, source, target);
   const TransferResult result = transfer(source, target, request.options);
   std::optional<Report> report;
   if (!folder.empty())
@@ -133,6 +190,10 @@ void run(Request& request, const Common& common) {
     write_file_atomically(folder / "report.json", report->json);
     json["report"] = (folder / "report.html").string();
     text += fmt::format("report: {}\n", json["report"].get<std::string>());
+  }
+  for (const FoundSide& side : found) {
+    json["found_landmarks"][side.file] = json_of(side.found);
+    text += fmt::format("landmarks of {} found, {}", side.file, text_of(side.found));
   }
   print_result(common, text, json);
 }
@@ -152,9 +213,9 @@ void add_transfer(CLI::App& app, Common& common) {
   command->add_option("-o,--output", request->output, "The target with the source's rig (.glb, .gltf)")
       ->required();
   command->add_option("--source-landmarks", request->source_landmarks,
-                      "Landmark file of the source (default: those inside the file)");
+                      "Landmark file of the source (default: those inside the file, else found)");
   command->add_option("--target-landmarks", request->target_landmarks,
-                      "Landmark file of the target (default: those inside the file)");
+                      "Landmark file of the target (default: those inside the file, else found)");
   const std::map<std::string, TransferMethod> methods{{"register", TransferMethod::registration},
                                                       {"thesis", TransferMethod::thesis}};
   command->add_option("--method", options.method, "register: no folds, no glued lips; thesis: the baseline")

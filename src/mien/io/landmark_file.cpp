@@ -64,6 +64,7 @@ void write_landmarks(const LandmarkSet& set, const Character& character, const s
     for (const SurfacePoint& point : curve.points) points.push_back(detail::point_json(point, character));
     root["curves"][curve.name] = {{"points", points}, {"count", curve.count}};
   }
+  for (const auto& [name, confidence] : set.confidence) root["confidence"][name] = confidence;
   write_file_atomically(path, detail::json_text(root, 1) + "\n");
 }
 

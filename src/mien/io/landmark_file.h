@@ -2,6 +2,8 @@
 /// The landmark file: {"landmarks": {NAME: POINT}, "curves": {NAME: {"points": [POINT, ...], "count": N}}}.
 
 #include <filesystem>
+#include <map>
+#include <string>
 #include <vector>
 
 #include "mien/character/character.h"
@@ -11,6 +13,9 @@ namespace mien {
 struct LandmarkSet {
   std::vector<Landmark> landmarks;    ///< by name, ascending
   std::vector<LandmarkCurve> curves;  ///< by name, ascending
+  /// Where landmarks were found by themselves: how sure each is, in [0, 1]; the file's "confidence" member. Written
+  /// where it is not empty, not read back.
+  std::map<std::string, double> confidence;
 };
 
 /// POINT is {"vertex": 17}, {"part": "Skin", "vertex": 17}, {"face": 3, "barycentric": [a, b, c]} or
