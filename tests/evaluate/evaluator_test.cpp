@@ -239,6 +239,24 @@ TEST(Evaluator, ChosenVerticesInTheOrderChosen) {
   for (std::size_t i = 0; i < 12; ++i) EXPECT_EQ(few[i], all[3 * rows[i / 3] + i % 3]);
 }
 
+std::vector<float> baked_blocks(Evaluator& evaluator, const std::vector<Pose>& poses, std::size_t offset) {
+  const std::size_t size = poses.size() * 48 * evaluator.block_count();
+  std::vector<float> memory(size + 32);
+  std::size_t first = 0;
+  while (reinterpret_cast<std::uintptr_t>(memory.data() + first) % 64) ++first;
+  evaluator.bake_blocks(poses, std::span(memory).subspan(first + offset, size));
+  const auto begin = memory.begin() + static_cast<std::ptrdiff_t>(first + offset);
+  return {begin, begin + static_cast<std::ptrdiff_t>(size)};
+}
+
+std::vector<float> single_blocks(Evaluator& evaluator, const std::vector<Pose>& poses) {
+  const std::size_t size = 48 * evaluator.block_count();
+  std::vector<float> blocks(poses.size() * size);
+  for (std::size_t f = 0; f < poses.size(); ++f)
+    evaluator.evaluate_blocks(poses[f], std::span(blocks).subspan(f * size, size));
+  return blocks;
+}
+
 TEST(Evaluator, BakeGivesWhatSingleFramesGive) {
   for (unsigned seed = 0; seed < 12; ++seed) {
     const Character character = test::random_rig(seed);
@@ -249,6 +267,7 @@ TEST(Evaluator, BakeGivesWhatSingleFramesGive) {
       if (!is_supported(set)) continue;
       for (const DeltaPrecision precision : {DeltaPrecision::exact, DeltaPrecision::compact}) {
         Evaluator evaluator(character, with(set, precision));
+        const std::size_t blocks = 48 * evaluator.block_count();
         std::vector<float> frames(poses.size() * 3 * evaluator.vertex_count()), single;
         evaluator.bake(poses, frames);
         for (const Pose& pose : poses) {
@@ -256,6 +275,9 @@ TEST(Evaluator, BakeGivesWhatSingleFramesGive) {
           single.insert(single.end(), one.begin(), one.end());
         }
         EXPECT_TRUE(same_bytes(frames, single)) << "seed " << seed << ", " << name_of(set);
+        for (const std::size_t offset : {0, 1})  // on a cache line, and off it
+          EXPECT_TRUE(same_bytes(baked_blocks(evaluator, poses, offset), single_blocks(evaluator, poses)))
+              << "seed " << seed << ", " << name_of(set);
       }
     }
   }

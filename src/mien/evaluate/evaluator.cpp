@@ -74,8 +74,12 @@ InstructionSet best_supported() {
   return InstructionSet::plain;
 }
 
-BlockRun rows_of(const detail::Blocks& blocks) {
+/// The blocks of one part.
+BlockRun run_of(const detail::Blocks& blocks, std::size_t part) {
   BlockRun run;
+  run.begin = blocks.parts[part].begin;
+  run.end = blocks.parts[part].end;
+  run.skin = blocks.parts[part].skin;
   run.row = blocks.row.data();
   run.in_a_row = blocks.in_a_row.data();
   return run;
@@ -183,15 +187,16 @@ std::size_t Evaluator::update_blocks(const Pose& pose, std::span<float> blocks) 
 /// Runs the blocks of one part: all, or those that a change can move; those with opposite quaternions one by one.
 class Evaluator::PartRun {
  public:
-  PartRun(const Compiled& compiled, State& state, std::size_t part, BlockRun out)
+  PartRun(const Compiled& compiled, State& state, std::size_t part, float* blocks, float* rows)
       : blocks_(compiled.blocks),
         kernel_(*compiled.kernel),
         state_(state),
-        out_(out),
+        out_(run_of(compiled.blocks, part)),
         data_(blocks_.view()),
         frame_(state.now.data(part)),
         part_(blocks_.parts[part]) {
-    out_.skin = part_.skin;
+    out_.blocks = blocks;
+    out_.rows = rows;
   }
 
   std::size_t all() {
@@ -268,12 +273,9 @@ std::size_t Evaluator::run(const Pose& pose, float* blocks, float* rows, bool on
   if (can_keep)
     for (std::size_t c = 0; c < state.moved.size(); ++c)
       state.moved[c] = state.now.has_moved(state.before, c);
-  BlockRun out = rows_of(compiled.blocks);
-  out.blocks = blocks;
-  out.rows = rows;
   std::size_t count = 0;
   for (std::size_t p = 0; p < compiled.blocks.parts.size(); ++p) {
-    PartRun part(compiled, state, p, out);
+    PartRun part(compiled, state, p, blocks, rows);
     count += can_keep ? part.changed(p) : part.all();
   }
   state.has_before = true;
@@ -288,7 +290,22 @@ struct Group {
   std::vector<float> coefficients;  // bake_width a shape
   std::vector<std::uint64_t> active;
   std::array<detail::FrameData, bake_width> data;
-  std::array<float*, bake_width> rows{};
+  std::size_t frame_floats;
+  std::unique_ptr<float[]> memory;  // positions of all lanes, frame after frame, and one float more
+  std::array<float*, bake_width> lanes{};
+
+  Group(const detail::Blocks& blocks, const Frame& frame, bool has_memory)
+      : frames(bake_width, frame),
+        coefficients(bake_width * frame.shape_count()),
+        active(blocks.words),
+        frame_floats(block_floats * blocks.count()),
+        memory(has_memory ? std::make_unique_for_overwrite<float[]>(bake_width * frame_floats + 1)
+                          : nullptr) {}
+
+  /// Where frame `f` is written: to the group's memory when it has any.
+  void place(std::size_t f, bool is_wanted, float* frame) {
+    lanes[f] = !is_wanted ? nullptr : memory ? memory.get() + f * frame_floats : frame;
+  }
 
   /// Lays part `part`'s coefficients side by side, of the first `count` frames.
   void lay_out(std::size_t part, std::size_t count) {
@@ -303,51 +320,72 @@ struct Group {
         }
     }
   }
+
+  detail::BakeFrames view() const {
+    const bool on_lines = reinterpret_cast<std::uintptr_t>(lanes[0]) % 64 == 0;
+    return {coefficients.data(), active.data(),       data.data(),
+            lanes.data(),        !memory && on_lines, memory != nullptr};
+  }
 };
 
 }  // namespace
 
+/// The blocks of `frame` whose quaternions need signs, once more.
+void Evaluator::run_twisted(const Compiled& compiled, State& state, Frame& frame, float* blocks,
+                            float* rows) {
+  std::swap(state.now, frame);
+  for (std::size_t p = 0; p < compiled.blocks.parts.size(); ++p)
+    if (compiled.blocks.parts[p].skin == BlockSkin::dual_quaternion)
+      PartRun(compiled, state, p, blocks, rows).twisted();
+  std::swap(state.now, frame);
+}
+
 // Eight frames go through a block together: its deltas are read and converted once for all of them, and their 24
-// accumulators fill the registers of AVX-512. Blocks whose quaternions need signs are done again frame by frame.
-void Evaluator::bake(std::span<const Pose> poses, std::span<float> frames) const {
+// accumulators fill the registers of AVX-512. Frames in the order of the file are written block by block to memory that
+// stays in the caches and copied from there row by row: scattered straight into frames that do not fit the caches, every
+// line was fetched and written several times (twice the time). Blocks whose quaternions need signs are done again.
+void Evaluator::bake_groups(std::span<const Pose> poses, float* frames, bool as_rows) const {
   const Compiled& compiled = *compiled_;
-  const std::size_t size = 3 * vertex_count();
-  check_size(frames.size(), poses.size() * size);
+  const std::size_t size = as_rows ? 3 * vertex_count() : block_floats * block_count();
   const std::size_t groups = (poses.size() + bake_width - 1) / bake_width;
-  parallel_for(groups, 1, [&](std::size_t begin, std::size_t end) {
+  // Few long ranges: each has memory of its own, which has to be found and touched first.
+  const std::size_t grain = std::max<std::size_t>(1, groups / (4 * static_cast<std::size_t>(thread_count())));
+  parallel_for(groups, grain, [&](std::size_t begin, std::size_t end) {
     State state(compiled);
-    Group group{std::vector<Frame>(bake_width, state.now),
-                std::vector<float>(bake_width * state.now.shape_count()),
-                std::vector<std::uint64_t>(compiled.blocks.words),
-                {},
-                {}};
-    for (std::size_t g = begin; g < end; ++g) {
-      const std::size_t first = bake_width * g, count = std::min(bake_width, poses.size() - first);
-      for (std::size_t f = 0; f < count; ++f) {
-        group.frames[f].set(compiled.outline, compiled.chain, compiled.blocks, compiled.twists,
-                            poses[first + f]);
-        group.rows[f] = frames.data() + (first + f) * size;
+    Group group(compiled.blocks, state.now, as_rows);
+    for (std::size_t first = bake_width * begin; first < std::min(bake_width * end, poses.size());
+         first += bake_width) {
+      const std::size_t count = std::min(bake_width, poses.size() - first);
+      for (std::size_t f = 0; f < bake_width; ++f) {
+        if (f < count)
+          group.frames[f].set(compiled.outline, compiled.chain, compiled.blocks, compiled.twists,
+                              poses[first + f]);
+        group.place(f, f < count, frames + (first + f) * size);
       }
-      std::fill(group.rows.begin() + static_cast<std::ptrdiff_t>(count), group.rows.end(), nullptr);
       for (std::size_t p = 0; p < compiled.blocks.parts.size(); ++p) {
         group.lay_out(p, count);
-        BlockRun out = rows_of(compiled.blocks);
-        out.begin = compiled.blocks.parts[p].begin;
-        out.end = compiled.blocks.parts[p].end;
-        out.skin = compiled.blocks.parts[p].skin;
-        compiled.kernel->bake(
-            compiled.blocks.view(),
-            {group.coefficients.data(), group.active.data(), group.data.data(), group.rows.data()}, out);
-        for (std::size_t f = 0; f < count && out.skin == BlockSkin::dual_quaternion; ++f)
-          if (group.frames[f].has_twist()) {
-            std::swap(state.now, group.frames[f]);
-            out.rows = group.rows[f];
-            PartRun(compiled, state, p, out).twisted();
-            std::swap(state.now, group.frames[f]);
-          }
+        compiled.kernel->bake(compiled.blocks.view(), group.view(), run_of(compiled.blocks, p));
+      }
+      for (std::size_t f = 0; f < count; ++f) {
+        float* frame = frames + (first + f) * size;
+        if (as_rows)
+          compiled.kernel->copy_rows(group.lanes[f], compiled.blocks.lane_of_row.data(), vertex_count(),
+                                     frame);
+        if (group.frames[f].has_twist())
+          run_twisted(compiled, state, group.frames[f], as_rows ? nullptr : frame, as_rows ? frame : nullptr);
       }
     }
   });
+}
+
+void Evaluator::bake(std::span<const Pose> poses, std::span<float> frames) const {
+  check_size(frames.size(), poses.size() * 3 * vertex_count());
+  if (vertex_count() > 0) bake_groups(poses, frames.data(), true);
+}
+
+void Evaluator::bake_blocks(std::span<const Pose> poses, std::span<float> frames) const {
+  check_size(frames.size(), poses.size() * block_floats * block_count());
+  bake_groups(poses, frames.data(), false);
 }
 
 double Evaluator::compact_error(const ShapeWeights& weights) const {

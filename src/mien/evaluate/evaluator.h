@@ -14,6 +14,9 @@
 #include "mien/character/pose.h"
 
 namespace mien {
+namespace detail {
+class Frame;
+}
 
 /// How deltas are stored: as floats, or as 16-bit multiples of a step of their shape's own (half the memory, and speed is
 /// memory). `Evaluator::compact_error` bounds what the steps cost.
@@ -79,6 +82,10 @@ class Evaluator {
   ///   throws   as `evaluate`
   void bake(std::span<const Pose> poses, std::span<float> frames) const;
 
+  /// The same in the evaluator's own order: poses.size() x 48 x block_count(). Half the time of `bake`, when `frames` begins
+  /// on a cache line of 64 bytes.
+  void bake_blocks(std::span<const Pose> poses, std::span<float> frames) const;
+
   /// No coordinate departs from the exact deltas' by more than this before skinning: half a step of every shape of a
   /// vertex times its weight, of the vertex for which that is most. 0 for exact deltas.
   double compact_error(const ShapeWeights& weights) const;
@@ -90,6 +97,9 @@ class Evaluator {
   struct Compiled;
   struct State;
   class PartRun;
+  static void run_twisted(const Compiled& compiled, State& state, detail::Frame& frame, float* blocks,
+                          float* rows);
+  void bake_groups(std::span<const Pose> poses, float* frames, bool as_rows) const;
   std::size_t run(const Pose& pose, float* blocks, float* rows, bool only_changes);
   std::shared_ptr<const Compiled> compiled_;
   std::unique_ptr<State> state_;

@@ -285,6 +285,10 @@ Blocks compile_blocks(const Character& character, const std::vector<std::vector<
   const auto past = static_cast<std::uint16_t>(chain.carriers().size());
   for (auto* list : {&blocks.joints, &blocks.pivots})
     std::replace(list->begin(), list->end(), static_cast<std::uint16_t>(identity), past);
+  blocks.lane_of_row.resize(blocks.vertex_count);
+  for (std::size_t i = 0; i < blocks.row.size(); ++i)
+    if (blocks.row[i] >= 0)
+      blocks.lane_of_row[static_cast<std::size_t>(blocks.row[i])] = static_cast<std::uint32_t>(i);
   return blocks;
 }
 

@@ -51,6 +51,7 @@ struct Blocks {
   std::vector<std::uint16_t>
       pivots;                     // 16 a block of a dual quaternion skin: the carrier of the largest weight
   std::vector<std::int32_t> row;  // 16 a block
+  std::vector<std::uint32_t> lane_of_row;  // 16 block + lane
   std::vector<std::uint8_t> in_a_row;
   std::size_t count() const { return in_a_row.size(); }
   BlockData view() const;

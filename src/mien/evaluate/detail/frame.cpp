@@ -125,8 +125,7 @@ void Frame::set_rigid(const TwistTable& twists) {
   has_twist_ = false;
   std::fill(is_twisted_.begin(), is_twisted_.end(), 0);
   for (const auto& [pivot, joint] : twists.pairs())
-    if (dot4(rigid_.data() + 8 * pivot, rigid_.data() + 8 * joint) < 0)
-{
+    if (dot4(rigid_.data() + 8 * pivot, rigid_.data() + 8 * joint) < 0) {
       has_twist_ = true;
       is_twisted_[pivot] = is_twisted_[joint] = 1;
     }

@@ -55,12 +55,16 @@ struct BakeFrames {
   const float* coefficients = nullptr;  // bake_width a shape
   const std::uint64_t* active = nullptr;
   const FrameData* frames = nullptr;  // bake_width
-  float* const* rows = nullptr;       // bake_width, as BlockRun::rows; null: the frame is not wanted
+  float* const* lanes = nullptr;      // bake_width: where a frame's blocks go; null: it is not wanted
+  bool stream = false;                // past the caches: `lanes` begin on cache lines
+  bool interleave = false;            // a block as 16 x y z instead of 16 x, 16 y, 16 z
 };
 
 struct Kernel {
   void (*evaluate)(const BlockData&, const FrameData&, const BlockRun&);
   void (*bake)(const BlockData&, const BakeFrames&, const BlockRun&);
+  /// Row r of `rows` is lane lane_of_row[r] of `lanes` (3 floats each; one float past the last is read), past the caches.
+  void (*copy_rows)(const float* lanes, const std::uint32_t* lane_of_row, std::size_t count, float* rows);
 };
 
 extern const Kernel plain_kernel;

@@ -14,7 +14,7 @@ struct Lanes {
   __m256 a, b;
 };
 
-constexpr std::size_t bake_registers = 2;
+constexpr bool has_many_registers = false;
 
 MIEN_OPERATION Lanes load(const float* from) {
   return {_mm256_loadu_ps(from), _mm256_loadu_ps(from + 8)};
@@ -54,6 +54,13 @@ MIEN_OPERATION void store(float* to, Lanes p) {
   _mm256_storeu_ps(to, p.a);
   _mm256_storeu_ps(to + 8, p.b);
 }
+MIEN_OPERATION void stream(float* to, Lanes p) {
+  _mm256_stream_ps(to, p.a);
+  _mm256_stream_ps(to + 8, p.b);
+}
+MIEN_OPERATION void stream_end() {
+  _mm_sfence();
+}
 
 /// Eight vertices: with each register in the order that the rotation of three wants, blends pick every third lane.
 MIEN_OPERATION void store_interleaved8(float* to, __m256 x, __m256 y, __m256 z) {
@@ -73,7 +80,7 @@ MIEN_OPERATION void store_interleaved(float* to, Lanes x, Lanes y, Lanes z) {
 
 }  // namespace
 
-const Kernel avx2_kernel{evaluate, bake};
+const Kernel avx2_kernel{evaluate, bake, copy_rows};
 
 }  // namespace mien::detail
 #endif

@@ -15,7 +15,7 @@ namespace {
 
 using Lanes = __m512;
 
-constexpr std::size_t bake_registers = 8;
+constexpr bool has_many_registers = true;
 
 MIEN_OPERATION Lanes load(const float* from) {
   return _mm512_loadu_ps(from);
@@ -51,6 +51,12 @@ MIEN_OPERATION Lanes magnitude(Lanes a) {
 MIEN_OPERATION void store(float* to, Lanes a) {
   _mm512_storeu_ps(to, a);
 }
+MIEN_OPERATION void stream(float* to, Lanes a) {
+  _mm512_stream_ps(to, a);
+}
+MIEN_OPERATION void stream_end() {
+  _mm_sfence();
+}
 
 /// Lane i of the k-th register of x0 y0 z0 x1 y1 z1 ... is coordinate (16 k + i) % 3 of vertex (16 k + i) / 3: indices
 /// below 16 choose from the first of two registers, those from 16 on from the second.
@@ -70,7 +76,7 @@ MIEN_OPERATION void store_interleaved(float* to, Lanes x, Lanes y, Lanes z) {
 
 }  // namespace
 
-const Kernel avx512_kernel{evaluate, bake};
+const Kernel avx512_kernel{evaluate, bake, copy_rows};
 
 }  // namespace mien::detail
 #endif

@@ -70,25 +70,43 @@ MIEN_INLINE const float* weights_of(const BlockData& data, const FrameData& fram
                              : data.joint_weights + lane_count * data.joint_begin[block];
 }
 
-/// sum over joints of weight x (matrix p). A block of one joint needs no weights.
-MIEN_INLINE Lanes3 skinned_linear(const BlockData& data, const FrameData& frame, std::size_t block,
-                                  const Lanes3& p) {
+/// Rows [begin, end) of the blended matrices, times p. More rows at a time load the weights less often and take more
+/// registers.
+template <std::size_t begin, std::size_t end>
+MIEN_INLINE void blended_rows(const BlockData& data, const FrameData& frame, std::size_t block,
+                              const Lanes3& p, Lanes* out) {
   const std::uint16_t* joint = data.joints + data.joint_begin[block];
   const std::size_t count = data.joint_begin[block + 1] - data.joint_begin[block];
-  const float* m = frame.matrices + 12 * joint[0];
-  if (count == 1) return {row_times(m, p), row_times(m + 4, p), row_times(m + 8, p)};
   const float* weights = weights_of(data, frame, block);
-  Lanes w = load(weights);
-  Lanes3 sum{multiply(w, row_times(m, p)), multiply(w, row_times(m + 4, p)),
-             multiply(w, row_times(m + 8, p))};
+  const float* matrix = frame.matrices + 12 * joint[0];
+  Lanes m[4 * end], w = load(weights);
+  for (std::size_t k = 4 * begin; k < 4 * end; ++k) m[k] = multiply(w, all(matrix[k]));
   for (std::size_t j = 1; j < count; ++j) {
-    m = frame.matrices + 12 * joint[j];
+    matrix = frame.matrices + 12 * joint[j];
     w = load(weights + lane_count * j);
-    sum.x = multiply_add(w, row_times(m, p), sum.x);
-    sum.y = multiply_add(w, row_times(m + 4, p), sum.y);
-    sum.z = multiply_add(w, row_times(m + 8, p), sum.z);
+    for (std::size_t k = 4 * begin; k < 4 * end; ++k) m[k] = multiply_add(w, all(matrix[k]), m[k]);
   }
-  return sum;
+  for (std::size_t i = begin; i < end; ++i)
+    out[i] = multiply_add(m[4 * i], p.x,
+                          multiply_add(m[4 * i + 1], p.y, multiply_add(m[4 * i + 2], p.z, m[4 * i + 3])));
+}
+
+/// The matrices' blend times p. A block of one joint needs no weights.
+MIEN_INLINE Lanes3 skinned_linear(const BlockData& data, const FrameData& frame, std::size_t block,
+                                  const Lanes3& p) {
+  if (data.joint_begin[block + 1] - data.joint_begin[block] == 1) {
+    const float* m = frame.matrices + 12 * data.joints[data.joint_begin[block]];
+    return {row_times(m, p), row_times(m + 4, p), row_times(m + 8, p)};
+  }
+  Lanes y[3];
+  if constexpr (has_many_registers) {
+    blended_rows<0, 3>(data, frame, block, p, y);
+  } else {
+    blended_rows<0, 1>(data, frame, block, p, y);
+    blended_rows<1, 2>(data, frame, block, p, y);
+    blended_rows<2, 3>(data, frame, block, p, y);
+  }
+  return {y[0], y[1], y[2]};
 }
 
 MIEN_INLINE Lanes3 stretched(const BlockData& data, const FrameData& frame, std::size_t block,
@@ -167,17 +185,25 @@ MIEN_INLINE void store_rows(const BlockRun& run, float* rows, std::size_t block,
       __builtin_memcpy(rows + 3 * static_cast<std::size_t>(row[l]), lanes + 3 * l, 3 * sizeof(float));
 }
 
+MIEN_INLINE void store_block(float* to, const Lanes3& p) {
+  store(to, p.x);
+  store(to + 16, p.y);
+  store(to + 32, p.z);
+}
+
+MIEN_INLINE void stream_block(float* to, const Lanes3& p) {
+  stream(to, p.x);
+  stream(to + 16, p.y);
+  stream(to + 32, p.z);
+}
+
 MIEN_TARGET void evaluate(const BlockData& data, const FrameData& frame, const BlockRun& run) {
   for (std::size_t b = run.begin; b < run.end; ++b) {
     const Lanes3 p = skinned(data, frame, run.skin, b, shaped(data, frame, b));
-    if (run.blocks) {
-      float* out = run.blocks + block_floats * b;
-      store(out, p.x);
-      store(out + 16, p.y);
-      store(out + 32, p.z);
-    } else {
+    if (run.blocks)
+      store_block(run.blocks + block_floats * b, p);
+    else
       store_rows(run, run.rows, b, p);
-    }
   }
 }
 
@@ -214,7 +240,7 @@ MIEN_INLINE void bake_shapes(const BlockData& data, const Delta* deltas, const B
 template <class Delta>
 MIEN_INLINE void bake_block(const BlockData& data, const Delta* deltas, const BakeFrames& bake,
                             std::size_t block, Lanes3* out) {
-  if constexpr (bake_registers >= 8) {
+  if constexpr (has_many_registers) {
     bake_shapes<Delta, 0, 8>(data, deltas, bake, block, out);
   } else {
     bake_shapes<Delta, 0, 2>(data, deltas, bake, block, out);
@@ -231,9 +257,51 @@ MIEN_TARGET void bake(const BlockData& data, const BakeFrames& bake, const Block
       bake_block(data, data.compact, bake, b, p);
     else
       bake_block(data, data.deltas, bake, b, p);
-    for (std::size_t f = 0; f < bake_width; ++f)
-      if (bake.rows[f]) store_rows(run, bake.rows[f], b, skinned(data, bake.frames[f], run.skin, b, p[f]));
+    for (std::size_t f = 0; f < bake_width; ++f) {
+      if (!bake.lanes[f]) continue;
+      const Lanes3 q = skinned(data, bake.frames[f], run.skin, b, p[f]);
+      float* to = bake.lanes[f] + block_floats * b;
+      if (bake.interleave)
+        store_interleaved(to, q.x, q.y, q.z);
+      else if (bake.stream)
+        stream_block(to, q);
+      else
+        store_block(to, q);
+    }
   }
+  if (bake.stream) stream_end();
+}
+
+/// Copies rows [begin, end) to `to`, which has room for one float more.
+MIEN_INLINE void gather_rows(const float* lanes, const std::uint32_t* lane_of_row, std::size_t begin,
+                             std::size_t end, float* to) {
+  for (std::size_t r = begin; r < end; ++r, to += 3)
+    __builtin_memcpy(to, lanes + std::size_t{3} * lane_of_row[r], 4 * sizeof(float));
+}
+
+MIEN_INLINE void copy_row(const float* lanes, const std::uint32_t* lane_of_row, std::size_t row,
+                          float* rows) {
+  __builtin_memcpy(rows + 3 * row, lanes + std::size_t{3} * lane_of_row[row], 3 * sizeof(float));
+}
+
+/// Whole cache lines are written past the caches: nobody reads a baked frame soon, and a line written in full need not be
+/// fetched first. Within sixteen rows one begins on a line. Rows are gathered many at a time, so that what is loaded as
+/// lines has long left the store buffer.
+MIEN_TARGET void copy_rows(const float* lanes, const std::uint32_t* lane_of_row, std::size_t count,
+                           float* rows) {
+  constexpr std::size_t batch = 16 * lane_count;
+  alignas(64) float some[3 * batch + 1];
+  std::size_t r = 0;
+  while (r < count && reinterpret_cast<std::uintptr_t>(rows + 3 * r) % 64)
+    copy_row(lanes, lane_of_row, r++, rows);
+  for (; r + lane_count <= count;) {
+    const std::size_t taken = count - r < batch ? (count - r) / lane_count * lane_count : batch;
+    gather_rows(lanes, lane_of_row, r, r + taken, some);
+    for (std::size_t k = 0; k < 3 * taken; k += lane_count) stream(rows + 3 * r + k, load(some + k));
+    r += taken;
+  }
+  while (r < count) copy_row(lanes, lane_of_row, r++, rows);
+  stream_end();
 }
 
 #undef MIEN_INLINE

@@ -10,7 +10,7 @@ struct Lanes {
   float v[lane_count];
 };
 
-constexpr std::size_t bake_registers = 2;
+constexpr bool has_many_registers = false;
 
 template <class Number>
 inline Lanes load(const Number* from) {
@@ -61,6 +61,10 @@ inline Lanes magnitude(const Lanes& a) {
 inline void store(float* to, const Lanes& a) {
   for (std::size_t l = 0; l < lane_count; ++l) to[l] = a.v[l];
 }
+inline void stream(float* to, const Lanes& a) {
+  store(to, a);
+}
+inline void stream_end() {}
 inline void store_interleaved(float* to, const Lanes& x, const Lanes& y, const Lanes& z) {
   for (std::size_t l = 0; l < lane_count; ++l) {
     to[3 * l] = x.v[l];
@@ -73,6 +77,6 @@ inline void store_interleaved(float* to, const Lanes& x, const Lanes& y, const L
 
 }  // namespace
 
-const Kernel plain_kernel{evaluate, bake};
+const Kernel plain_kernel{evaluate, bake, copy_rows};
 
 }  // namespace mien::detail
