@@ -30,6 +30,10 @@ int main(int argc, char** argv) {
   mien::cli::add_render(app, common);
   mien::cli::add_pose(app, common);
   mien::cli::add_attenuate(app, common);
+  mien::cli::add_retarget(app, common);
+  mien::cli::add_rename(app, common);
+  mien::cli::add_map(app, common);
+  mien::cli::add_batch(app, common);
   for (CLI::App* command : app.get_subcommands({})) {
     add_common_flags(*command, common);
     command->parse_complete_callback([&common] { mien::set_thread_count(common.threads); });

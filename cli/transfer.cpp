@@ -9,12 +9,11 @@
 
 #include "command.h"
 #include "find_landmarks.h"
+#include "load_face.h"
 #include "mien/core/error.h"
 #include "mien/io/file.h"
-#include "mien/io/landmark_file.h"
 #include "mien/io/load.h"
 #include "mien/report/report.h"
-#include "mien/sample/sample.h"
 
 namespace mien::cli {
 namespace {
@@ -46,73 +45,6 @@ void read_exaggeration(const std::vector<std::string>& texts, TransferOptions& o
     else
       options.shape_exaggeration[text.substr(0, equals)] = percent / 100;
   }
-}
-
-Character load_with_landmarks(const std::string& path, const std::string& landmarks) {
-  Character character = load(path);
-  if (!landmarks.empty()) {
-    LandmarkSet set = read_landmarks(landmarks, character);
-    character.landmarks = std::move(set.landmarks);
-    character.curves = std::move(set.curves);
-  }
-  return character;
-}
-
-std::size_t marks(const Character& character) {
-  return character.landmarks.size() + character.curves.size();
-}
-
-std::size_t shared_marks(const Character& a, const Character& b) {
-  const auto count = [](const auto& left, const auto& right) {
-    return std::count_if(left.begin(), left.end(), [&](const auto& one) {
-      return std::any_of(right.begin(), right.end(),
-                         [&](const auto& other) { return other.name == one.name; });
-    });
-  };
-  return static_cast<std::size_t>(count(a.landmarks, b.landmarks) + count(a.curves, b.curves));
-}
-
-/// With fewer pairs than this the others are found; with as many, what the user gave is all there is.
-constexpr std::size_t enough_pairs = 12;
-
-/// One side whose landmarks were found, for the report.
-struct FoundSide {
-  std::string file;
-  FoundLandmarks found;
-};
-
-/// Gives `character` the landmarks of `like` in place of what is missing; its own stay.
-void complete(const std::string& file, Character& character, const Character& like,
-              const FindLandmarksOptions& options, std::vector<FoundSide>& sides) {
-  FoundLandmarks found = find_landmarks_of(file, character, like, options);
-  character.landmarks = found.points();
-  for (LandmarkCurve& curve : found.curves)
-    if (std::none_of(character.curves.begin(), character.curves.end(),
-                     [&](const LandmarkCurve& own) { return own.name == curve.name; }))
-      character.curves.push_back(std::move(curve));
-  sides.push_back({file, std::move(found)});
-}
-
-/// Sees to it that both sides have landmarks of the same names: a side that has few or none gets the other's, and where
-/// neither has enough, the source gets the built-in human's first.
-std::vector<FoundSide> find_missing(const Request& request, Character& source, Character& target) {
-  std::vector<FoundSide> sides;
-  if (shared_marks(source, target) >= enough_pairs) return sides;
-  FindLandmarksOptions options;
-  options.progress = request.options.progress;
-  if (marks(source) < enough_pairs && marks(target) >= enough_pairs) {
-    options.given = source.landmarks;
-    complete(request.source, source, target, options, sides);
-    return sides;
-  }
-  if (marks(source) < enough_pairs) {
-    options.given = source.landmarks;
-    complete(request.source, source, make_sample("human"), options, sides);
-    options.like_facing = sides[0].found.facing;
-  }
-  options.given = target.landmarks;
-  complete(request.target, target, source, options, sides);
-  return sides;
 }
 
 nlohmann::json as_json(const TransferReport& report, const std::string& output) {
@@ -171,12 +103,14 @@ void make_folder(const std::filesystem::path& folder) {
 
 void run(Request& request, const Common& common) {
   read_exaggeration(request.exaggerate, request.options);
-  Character source = load_with_landmarks(request.source, request.source_landmarks);
-  Character target = load_with_landmarks(request.target, request.target_landmarks);
+  Character source = load_face(request.source, request.source_landmarks);
+  Character target = load_face(request.target, request.target_landmarks);
+  const Character source = load_face(request.source, request.source_landmarks);
+  const Character target = load_face(request.target, request.target_landmarks);
   const std::filesystem::path folder = request.report;
   if (!folder.empty()) make_folder(folder);
   request.options.progress = progress_bar(common);
-  const std::vector<FoundSide> found = find_missing(request, source, target);
+  const std::vector<FoundSide> found = find_missing({request.source, source}, {request.target, target}, request.options.progress);
   const TransferResult result = transfer(source, target, request.options);
   std::optional<Report> report;
   if (!folder.empty())
