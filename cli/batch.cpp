@@ -115,9 +115,10 @@ json do_job(const TransferJob& job, const Request& request, Sources& sources) {
     known["state"] = "skipped";
     return known;
   }
-  const std::shared_ptr<const Character> source = sources.get(job);
-  const TransferResult result =
-      transfer(*source, load_face(job.target.string(), job.target_landmarks.string()));
+  Character source = *sources.get(job);
+  Character target = load_face(job.target.string(), job.target_landmarks.string());
+  find_missing({job.source.string(), source}, {job.target.string(), target}, {});
+  const TransferResult result = transfer(source, target);
   make_folder_of(job.output);
   save(result.character, job.output, {request.compress});
   json warnings = json::array();

@@ -110,7 +110,8 @@ void run(Request& request, const Common& common) {
   const std::filesystem::path folder = request.report;
   if (!folder.empty()) make_folder(folder);
   request.options.progress = progress_bar(common);
-  const std::vector<FoundSide> found = find_missing({request.source, source}, {request.target, target}, request.options.progress);
+  const std::vector<FoundSide> found =
+      find_missing({request.source, source}, {request.target, target}, request.options.progress);
   const TransferResult result = transfer(source, target, request.options);
   std::optional<Report> report;
   if (!folder.empty())

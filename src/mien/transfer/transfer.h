@@ -75,7 +75,7 @@ struct TransferResult {
 ///   method  thesis chapter 4 with correspondence by non-rigid registration (register_surfaces.h), displacements by
 ///           delta_models.h and contact.h, joints by a moving similarity, skin weights along the correspondence
 ///   cost    2 to 4 s for 27,000 vertices and 57 shapes on one core; memory about 40 bytes x vertices x shapes
-/// Same input, same bytes, at any thread count.
+/// Same input, same bytes, at any thread count, also when several run side by side.
 TransferResult transfer(const Character& source, const Character& target,
                         const TransferOptions& options = {});
 

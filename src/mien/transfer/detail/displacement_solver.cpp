@@ -5,6 +5,7 @@
 #include <Eigen/CholmodSupport>
 #include <algorithm>
 #include <cmath>
+#include <mutex>
 
 #include "mien/core/error.h"
 
@@ -15,16 +16,22 @@ constexpr double bending_unit = 1e-6;
 constexpr double tolerance = 1e-3;
 constexpr int most_steps = 30;
 
-/// CHOLMOD asks for four threads whatever the machine has; they spin more than they work, and sums must not depend on
-/// them. Within this scope OpenMP stays on the calling thread.
-class OneThread {
+/// The turn to use CHOLMOD. Debian's serial OpenBLAS under it has buffers that callers share, so that registrations
+/// side by side must take turns. And CHOLMOD asks OpenMP for four threads whatever the machine has; they spin more than
+/// they work, and sums must not depend on them: within this scope OpenMP stays on the calling thread.
+class CholmodTurn {
  public:
-  OneThread() { omp_set_max_active_levels(0); }
-  ~OneThread() { omp_set_max_active_levels(levels_); }
-  OneThread(const OneThread&) = delete;
-  OneThread& operator=(const OneThread&) = delete;
+  CholmodTurn() { omp_set_max_active_levels(0); }
+  ~CholmodTurn() { omp_set_max_active_levels(levels_); }
+  CholmodTurn(const CholmodTurn&) = delete;
+  CholmodTurn& operator=(const CholmodTurn&) = delete;
 
  private:
+  static std::mutex& mutex() {
+    static std::mutex shared;
+    return shared;
+  }
+  std::lock_guard<std::mutex> lock_{mutex()};
   int levels_ = omp_get_max_active_levels();
 };
 
@@ -74,6 +81,7 @@ DisplacementSolver::DisplacementSolver(const PointsD& rest, const Triangles& tri
   const SparseMatrix laplacian = cotangent_laplacian(rest, triangles);
   bending_ = laplacian * masses_.cwiseInverse().asDiagonal() * laplacian;
   bending_.makeCompressed();
+  const CholmodTurn turn;
   factor_->cholesky.analyzePattern(bending_);
 }
 
@@ -96,7 +104,7 @@ PointsD DisplacementSolver::solve(double stiffness, const std::vector<Wish>& wis
         if (value != 0) add_to_entry(scalar, wish.vertices[i], wish.vertices[j], value);
       }
   {
-    const OneThread only;
+    const CholmodTurn turn;
     factor_->cholesky.factorize(scalar);
   }
   if (factor_->cholesky.info() != Eigen::Success)
@@ -110,6 +118,7 @@ PointsD DisplacementSolver::solve(double stiffness, const std::vector<Wish>& wis
     return result;
   };
   const auto precondition = [&](const PointsD& r) {
+    const CholmodTurn turn;
     return PointsD(factor_->cholesky.solve(Eigen::MatrixXd(r)));
   };
 
