@@ -105,8 +105,6 @@ void run(Request& request, const Common& common) {
   read_exaggeration(request.exaggerate, request.options);
   Character source = load_face(request.source, request.source_landmarks);
   Character target = load_face(request.target, request.target_landmarks);
-  const Character source = load_face(request.source, request.source_landmarks);
-  const Character target = load_face(request.target, request.target_landmarks);
   const std::filesystem::path folder = request.report;
   if (!folder.empty()) make_folder(folder);
   request.options.progress = progress_bar(common);
