@@ -11,6 +11,7 @@
 #include "mien/io/capture_file.h"
 #include "mien/io/load.h"
 #include "mien/io/name_map_file.h"
+#include "mien/motion/fit_markers.h"
 #include "mien/motion/retarget_joints.h"
 #include "mien/motion/retarget_sliders.h"
 
@@ -66,10 +67,23 @@ Retargeted retarget_skeleton(const Request& request, const Character& character)
   return {std::move(result.clip), std::move(result.mapped), std::move(result.unmapped), {}};
 }
 
-Retargeted retarget_capture(Request& request, const Character& character) {
+Retargeted retarget_markers(const Request& request, const Character& character, const Progress& progress) {
+  FitMarkersOptions options;
+  options.progress = progress;
+  options.smooth = request.options.smooth;
+  options.neutral_at = std::max(0.0, request.neutral);
+  if (!request.map.empty())
+    for (const MappedName& name : read_name_map(request.map)) options.landmarks[name.from] = name.to;
+  FitMarkersResult result = fit_markers(read_marker_csv(request.capture, request.rate), character, options);
+  return {std::move(result.clip), std::move(result.matched), std::move(result.unmapped), {}};
+}
+
+Retargeted retarget_capture(Request& request, const Character& character, const Progress& progress) {
   switch (capture_kind(request.capture)) {
     case CaptureKind::skeleton:
       return retarget_skeleton(request, character);
+    case CaptureKind::markers:
+      return retarget_markers(request, character, progress);
     default:
       return retarget_slider_take(request, character);
   }
@@ -87,7 +101,7 @@ void run(Request& request, const Common& common) {
   Character character = load(request.character);
   Retargeted retargeted;
   try {
-    retargeted = retarget_capture(request, character);
+    retargeted = retarget_capture(request, character, progress_bar(common));
   } catch (const Error& error) {
     throw error.in_file(request.capture);
   }
@@ -116,7 +130,9 @@ void add_retarget(CLI::App& app, Common& common) {
   CLI::App* command = app.add_subcommand("retarget", "Put a captured performance on CHARACTER as a clip");
   auto request = std::make_shared<Request>();
   RetargetOptions& options = request->options;
-  command->add_option("capture", request->capture, "Live Link Face or other slider CSV, or a BVH skeleton")
+  command
+      ->add_option("capture", request->capture,
+                   "Live Link Face or other slider CSV, marker CSV (NAME.x, NAME.y, NAME.z) or BVH skeleton")
       ->required();
   command->add_option("character", request->character, "A character with sliders or joints (.glb, .gltf)")
       ->required();
@@ -128,8 +144,9 @@ void add_retarget(CLI::App& app, Common& common) {
   command->add_option("--name", request->name,
                       "Name of the clip; one of this name is replaced (default: capture, or the take's)");
   command
-      ->add_option("--neutral", request->neutral,
-                   "Second at which the actor's face is neutral (default: not calibrated)")
+      ->add_option(
+          "--neutral", request->neutral,
+          "Second at which the actor's face is neutral (default: sliders are not calibrated, markers at 0)")
       ->check(CLI::NonNegativeNumber);
   command->add_option("--gain", request->gains, "SLIDER=FACTOR, as often as needed");
   command->add_flag("--overdrive", options.overdrive, "Keep values beyond a slider's range");
