@@ -52,7 +52,7 @@ inline BoxQpCase random_box_qp(std::mt19937& random, int most_sliders, bool spar
   for (int j = 0; j < sliders; ++j) {
     start[j] = uniform(random) < 0.5 ? 0 : uniform(random) * (uniform(random) < 0.1 ? 1.5 : 1);
     wanted[j] = uniform(random) < 0.5 ? start[j] : 2 * normal(random);
-    c.stiffness[j] = alpha * (uniform(random) < 0.2 ? std::exp(2 * normal(random)) : 1) + mu;
+    c.stiffness[j] = alpha * (uniform(random) < 0.2 ? std::exp(std::abs(2 * normal(random))) : 1) + mu;
     const double kind = uniform(random);
     c.low[j] = kind < 0.1 ? 0 : kind < 0.2 ? -HUGE_VAL : -0.1 * (kind < 0.4) - start[j];
     c.high[j] = kind < 0.1 ? 0 : 1 - start[j];

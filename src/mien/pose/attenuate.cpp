@@ -3,6 +3,7 @@
 #include "mien/pose/attenuate.h"
 
 #include <Eigen/Cholesky>
+#include <Eigen/SparseCore>
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -10,8 +11,8 @@
 #include "mien/character/sliders.h"
 #include "mien/core/error.h"
 #include "mien/evaluate/point_evaluator.h"
-#include "mien/pose/detail/cholesky.h"
 #include "mien/pose/detail/dense_box_qp.h"
+#include "mien/pose/detail/dense_kernels.h"
 #include "mien/pose/detail/gram.h"
 #include "mien/pose/detail/pin_checks.h"
 
@@ -42,15 +43,15 @@ struct Attenuator::Impl {
         pose(pose_of(checked(given, tagging_pose), tagging_pose)),
         character(given) {
     check_alpha(options.alpha);
-    slopes = shape_weight_slopes(character, tagging.sliders);
+    slopes = shape_weight_slopes(character, tagging.sliders).sparseView();
+    model = model_matrices(character, pose);
     gram = slopes.transpose() * detail::shape_products(character, pose) * slopes;
     for (const Part& part : character.parts) coordinates += 3 * static_cast<double>(part.mesh.vertex_count());
     n = static_cast<int>(gram.rows());
     for (int j = 0; j < n; ++j) gram(j, j) += gram(j, j) > 0 ? own_diagonal * gram(j, j) : 1;
-    double* lower = factor.lower(n);
-    for (int c = 0; c < n; ++c)
-      for (int r = c; r < n; ++r) lower[static_cast<std::size_t>(c) * factor.stride() + r] = gram(r, c);
-    if (!factor.factor()) throw invalid_input("shapes", "hold numbers that are not finite", "finite deltas");
+    factor.compute(gram);
+    if (factor.info() != Eigen::Success)
+      throw invalid_input("shapes", "hold numbers that are not finite", "finite deltas");
     low.resize(n);
     high.resize(n);
     for (int j = 0; j < n; ++j) {
@@ -61,6 +62,7 @@ struct Attenuator::Impl {
     update_map();
   }
 
+  Eigen::MatrixXd shape_rows(const SurfacePoint& point) const;
   void add_rows(const Eigen::MatrixXd& added, int number);
   void drop_rows(int number);
   void update_map();
@@ -70,9 +72,10 @@ struct Attenuator::Impl {
   RigPose tagging;
   Pose pose;
   const Character& character;
-  Eigen::MatrixXd slopes;  // #S x n
-  Eigen::MatrixXd gram;    // G
-  detail::Cholesky factor;
+  Eigen::SparseMatrix<double> slopes;  // #S x n
+  std::vector<Eigen::Matrix4d> model;
+  Eigen::MatrixXd gram;  // G
+  Eigen::LLT<Eigen::MatrixXd> factor;
   double coordinates = 0;
   int n = 0, next_number = 0;
   std::vector<int> owner;  // the tag of each row
@@ -84,16 +87,40 @@ struct Attenuator::Impl {
   Eigen::VectorXd low, high;  // of the change from tagging
 };
 
+/// 3 x #S. A part without a skin is looked up at once; compiling an evaluator would cost more than all the rest of a tag.
+Eigen::MatrixXd Attenuator::Impl::shape_rows(const SurfacePoint& point) const {
+  const Part& part = character.parts[point.part];
+  if (part.skin >= 0) {
+    Eigen::MatrixXd rows;
+    PointEvaluator(character, {point}).shape_rows(pose, rows);
+    return rows;
+  }
+  Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(3, static_cast<Eigen::Index>(character.shapes.size()));
+  for (std::size_t s = 0; s < character.shapes.size(); ++s)
+    for (const PartDelta& delta : character.shapes[s].parts) {
+      if (delta.part != point.part) continue;
+      for (int k = 0; k < (point.face < 0 ? 1 : 3); ++k) {
+        const int vertex = point.face < 0 ? point.vertex : part.mesh.faces[point.face][point.corners[k]];
+        const auto found = std::lower_bound(delta.vertices.begin(), delta.vertices.end(), vertex);
+        if (found == delta.vertices.end() || *found != vertex) continue;
+        const double weight = point.face < 0 ? 1 : point.barycentric[k];
+        rows.col(static_cast<Eigen::Index>(s)) +=
+            weight * delta.deltas.row(found - delta.vertices.begin()).transpose().cast<double>();
+      }
+    }
+  if (part.node >= 0) rows = (model[part.node].topLeftCorner<3, 3>() * rows).eval();
+  return rows;
+}
+
 void Attenuator::Impl::add_rows(const Eigen::MatrixXd& added, int number) {
   const Eigen::Index before = rows.rows(), count = added.rows();
   rows.conservativeResize(before + count, n);
   rows.bottomRows(count) = added;
+  owner.insert(owner.end(), static_cast<std::size_t>(count), number);
   solved.conservativeResize(n, before + count);
-  for (Eigen::Index r = 0; r < count; ++r) {
-    solved.col(before + r) = added.row(r).transpose();
-    factor.solve(solved.col(before + r).data());
-    owner.push_back(number);
-  }
+  Eigen::MatrixXd columns = added.transpose();
+  factor.solveInPlace(columns);
+  solved.rightCols(count) = columns;
   inner.conservativeResize(before + count, before + count);
   inner.rightCols(count).noalias() = rows * solved.rightCols(count);
   inner.bottomLeftCorner(count, before) = inner.topRightCorner(before, count).transpose();
@@ -125,8 +152,15 @@ void Attenuator::Impl::update_map() {
   if (rows.rows() == 0 || alpha == 0) return;
   Eigen::MatrixXd middle = (alpha - 1) * inner;
   middle.diagonal().array() += 1;
-  const Eigen::MatrixXd right = middle.ldlt().solve(rows);
-  map.noalias() -= (alpha * solved) * right;
+  const Eigen::MatrixXd right = alpha * middle.ldlt().solve(rows);
+  const detail::DenseKernels& kernels = detail::dense_kernels();
+  for (int j = 0; j < n; ++j) {
+    double* column = map.col(j).data();
+    Eigen::Index k = 0;
+    for (; k + 4 <= right.rows(); k += 4)
+      kernels.subtract_four(column, solved.col(k).data(), n, &right(k, j), n);
+    for (; k < right.rows(); ++k) kernels.add_scaled(column, solved.col(k).data(), -right(k, j), n);
+  }
 }
 
 Attenuator::Attenuator(const Character& character, const RigPose& tagging, const AttenuateOptions& options)
@@ -140,9 +174,7 @@ int Attenuator::add_tag(const Tag& tag) {
   detail::check_surface_point(a.character, tag.at, "tag " + std::to_string(a.next_number + 1));
   if (tag.axes.count < 1 || tag.axes.count > 3)
     throw invalid_input("tag " + std::to_string(a.next_number + 1), "holds no axis", "one to three");
-  Eigen::MatrixXd shape_rows;
-  PointEvaluator(a.character, {tag.at}).shape_rows(a.pose, shape_rows);
-  a.add_rows(tag.axes.directions.topRows(tag.axes.count) * shape_rows * a.slopes, a.next_number);
+  a.add_rows(tag.axes.directions.topRows(tag.axes.count) * a.shape_rows(tag.at) * a.slopes, a.next_number);
   a.update_map();
   return a.next_number++;
 }

@@ -43,6 +43,7 @@ void BoxQp::set_rows(const Eigen::Ref<const Eigen::MatrixXd>& b) {
     gram_.resize(few_rows() ? 0 : static_cast<std::size_t>(sliders_) * sliders_);
     cholesky_.reserve(std::min(rows_, sliders_));
     free_.reserve(sliders_);
+    changed_.reserve(sliders_);
     events_.reserve(static_cast<std::size_t>(4) * sliders_);
   }
   for (int j = 0; j < sliders_; ++j) {
@@ -103,14 +104,14 @@ void BoxQp::refresh(std::span<const double> goal) {
   for (int r = 0; r < rows_; ++r) residual_[r] += y_[r] - goal[r];
 }
 
-/// Where the sliders and F would be after `step` dy.
+/// Where the sliders and F would be after `step` dy; a step below 1 follows a full one along the same dy.
 void BoxQp::try_move(std::span<const double> goal, double step) {
-  if (step != 1)
-    for (int r = 0; r < rows_; ++r) dy_[r] *= step;
   const SliderMove move{v_.data(),  sparse_.data(), inverse_.data(), low_.data(),      high_.data(),
                         dv_.data(), moved_.data(),  new_x_.data(),   new_slope_.data()};
-  dense_kernels().move_sliders(panels_.data(), rows_, padded_, dy_.data(), move, sums_.data(),
-                               new_residual_.data());
+  dense_kernels().move_sliders(panels_.data(), rows_, padded_, step == 1 ? dy_.data() : nullptr, step, move,
+                               sums_.data(), new_residual_.data());
+  if (step != 1)
+    for (int r = 0; r < rows_; ++r) dy_[r] *= step;
   for (int r = 0; r < rows_; ++r) new_residual_[r] += y_[r] + dy_[r] - goal[r];
 }
 
@@ -159,13 +160,14 @@ bool BoxQp::factor_sliders() {
 
 /// The factor follows the sliders that became free or held, one after the other, when they are few.
 bool BoxQp::update_free_set() {
-  int changes = 0;
-  for (int j = 0; j < sliders_; ++j) changes += slope_[j] != factored_slope_[j];
-  if (changes == 0) return true;
-  if (!few_rows() || changes > std::max(2, rows_ / 8)) return false;
+  changed_.clear();
+  for (int j = 0; j < sliders_; ++j)
+    if (slope_[j] != factored_slope_[j]) changed_.push_back(j);
+  if (changed_.empty()) return true;
+  if (!few_rows() || static_cast<int>(changed_.size()) > std::max(8, rows_ / 5)) return false;
   for (const double sign : {1.0, -1.0})  // additions first: they keep it away from singular
-    for (int j = 0; j < sliders_; ++j) {
-      if (slope_[j] == factored_slope_[j] || (slope_[j] > 0) != (sign > 0)) continue;
+    for (const int j : changed_) {
+      if ((slope_[j] > 0) != (sign > 0)) continue;
       const double root = std::sqrt(inverse_[j]);
       for (int r = 0; r < rows_; ++r) column_[r] = root * entry(r, j);
       if (!cholesky_.update(column_.data(), sign)) return false;
@@ -200,16 +202,14 @@ void BoxQp::newton_direction() {
 
 /// A stretch (from, to) of v where the slider is free, as bends of the search's slope.
 void BoxQp::add_events(int slider, double from, double to, double& bend) {
-  const double v = v_[slider], dv = dv_[slider], weight = inverse_[slider] * dv * dv;
-  if (!(from < to)) return;
-  double in = (from - v) / dv, out = (to - v) / dv;
-  if (dv < 0) std::swap(in, out);
-  if (out <= 0 || in >= 1) return;
-  if (in <= 0)
+  const double v = v_[slider], end = moved_[slider], dv = dv_[slider];
+  if (!(from < to) || (v <= from && end <= from) || (v >= to && end >= to)) return;
+  const double weight = inverse_[slider] * dv * dv;
+  if (v > from && v < to)
     bend += weight;
   else
-    events_.push_back({in, weight});
-  if (out < 1) events_.push_back({out, -weight});
+    events_.push_back({((v <= from ? from : to) - v) / dv, weight});
+  if (end <= from || end >= to) events_.push_back({((end <= from ? from : to) - v) / dv, -weight});
 }
 
 /// Where along dy (at most 1) the slope F'dy vanishes.

@@ -80,7 +80,7 @@ class BoxQp {
   AlignedVector dy_, dv_, moved_, new_x_, new_slope_, new_residual_;
   AlignedVector factored_slope_, packed_, column_, sums_;
   Cholesky cholesky_;
-  std::vector<int> free_;
+  std::vector<int> free_, changed_;
   std::vector<Event> events_;
   double scale_ = 0;  // what one unit of F may be worth in slider units
   bool has_factor_ = false, stale_ = true;

@@ -38,12 +38,16 @@ MIEN_INLINE V settle(const V& moved, const SliderMove& move, int j, V& slope) {
 }
 
 MIEN_INLINE void move_sliders_body(const double* panels, int rows, int padded_sliders, const double* dy,
-                                   const SliderMove& move, double* sums, double* out) {
+                                   double step, const SliderMove& move, double* sums, double* out) {
   for (int i = 0; i < 16 * rows; ++i) sums[i] = 0;
   for (int j = 0; j < padded_sliders; j += panel_width) {
     const double* b = panels + static_cast<std::size_t>(j) * rows;
     V d0{}, d1{}, e0{}, e1{}, p, q, s, t;
-    int r = 0;
+    int r = dy ? 0 : rows;
+    if (!dy) {
+      load(d0, move.dv + j);
+      load(d1, move.dv + j + 8);
+    }
     for (; r + 1 < rows; r += 2) {
       load(p, b + 16 * r);
       load(q, b + 16 * r + 8);
@@ -65,8 +69,8 @@ MIEN_INLINE void move_sliders_body(const double* panels, int rows, int padded_sl
     load(v1, move.v + j + 8);
     d0 += e0;
     d1 += e1;
-    v0 += d0;
-    v1 += d1;
+    v0 += d0 * step;
+    v1 += d1 * step;
     const V x0 = settle(v0, move, j, slope0), x1 = settle(v1, move, j + 8, slope1);
     store(move.dv + j, d0);
     store(move.dv + j + 8, d1);
@@ -196,8 +200,8 @@ MIEN_INLINE void rotate_body(double* l, double* x, double c, double s, double si
 // One set of functions an instruction set. `TARGET` is an attribute or nothing.
 #define MIEN_KERNELS(NAME, TARGET)                                                                   \
   TARGET void move_sliders_##NAME(const double* panels, int rows, int sliders, const double* dy,     \
-                                  const SliderMove& move, double* sums, double* out) {               \
-    move_sliders_body(panels, rows, sliders, dy, move, sums, out);                                   \
+                                  double step, const SliderMove& move, double* sums, double* out) {  \
+    move_sliders_body(panels, rows, sliders, dy, step, move, sums, out);                             \
   }                                                                                                  \
   TARGET void multiply_by_transpose_##NAME(const double* a, int rows, int row_stride, double* lower, \
                                            int stride) {                                             \

@@ -48,16 +48,16 @@ struct SliderMove {
   const double* inverse;  ///< 1 / stiffness, > 0
   const double* low;      ///< limits of the change
   const double* high;
-  double* dv;     ///< out: B' dy
-  double* moved;  ///< out: v + dv
+  double* dv;     ///< B' dy
+  double* moved;  ///< out: v + step dv
   double* x;      ///< out: the sliders' changes there
   double* slope;  ///< out: `inverse` where the slider is free, 0 where a limit or the dead zone holds it
 };
 
 struct DenseKernels {
-  /// dv = B' dy, moved = v + dv, x = clip((moved - clip(moved, +-sparse)) inverse, low, high), out = B x. `sums` is work
+  /// dv = B' dy (with dy null: dv as it is), moved = v + step dv, x = clip((moved - clip(moved, +-sparse)) inverse, low, high), out = B x. `sums` is work
   /// space of 16 #R.
-  void (*move_sliders)(const double* panels, int rows, int padded_sliders, const double* dy,
+  void (*move_sliders)(const double* panels, int rows, int padded_sliders, const double* dy, double step,
                        const SliderMove& move, double* sums, double* out);
   /// Lower triangle, column-major with leading dimension `stride`, of A A' for A of `rows` x `width` stored by rows of
   /// `row_stride` (multiples of 8, zeros behind the width).
