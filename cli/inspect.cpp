@@ -5,7 +5,9 @@
 #include <set>
 
 #include "command.h"
+#include "interference.h"
 #include "mien/character/validate.h"
+#include "mien/core/error.h"
 #include "mien/io/load.h"
 
 namespace mien::cli {
@@ -205,15 +207,44 @@ std::string as_text(const json& result) {
 }  // namespace
 
 void add_inspect(CLI::App& app, Common& common) {
-  auto file = std::make_shared<std::string>();
+  struct Arguments {
+    std::string file, picture, rules, clip;
+    bool interference = false;
+  };
+  auto arguments = std::make_shared<Arguments>();
   CLI::App* command = app.add_subcommand("inspect", "Say what is in a file, and what is wrong with it");
-  command->add_option("FILE", *file, "A .glb, .gltf or .obj")->required();
-  command->footer("Example: mien inspect head.glb --json");
-  command->callback([file, &common] {
+  command->add_option("FILE", arguments->file, "A .glb, .gltf or .obj")->required();
+  command->add_flag("--interference", arguments->interference,
+                    "Which sliders move the same vertices, and where");
+  command->add_option("--picture", arguments->picture, "The interference as a matrix (.png)")
+      ->needs("--interference");
+  command->add_option("--rules", arguments->rules,
+                      "Check a clip against rules: which sliders may move a region (.json)");
+  command->add_option("--clip", arguments->clip, "The clip to check (default: the first)")->needs("--rules");
+  command->footer(
+      "Example: mien inspect head.glb --json\n"
+      "         mien inspect head.glb --interference --picture matrix.png\n"
+      "RULES: {\"rules\": [{\"name\": \"lids\", \"region\": [{\"vertex\": 17}], \"radius\": 0.01,\n"
+      "        \"sliders\": [\"eyeBlinkLeft\"], \"at_most\": 0.02}]}");
+  command->callback([arguments, &common] {
     LoadOptions options;
-    options.validate = false;
-    const json result = describe(*file, load(*file, options));
-    print_result(common, as_text(result), result);
+    options.validate = arguments->interference || !arguments->rules.empty();
+    const Character character = load(arguments->file, options);
+    json result = describe(arguments->file, character);
+    std::string text = as_text(result);
+    try {
+      if (arguments->interference) {
+        result["interference"] = describe_interference(character, arguments->picture);
+        text += interference_text(result["interference"]);
+      }
+      if (!arguments->rules.empty()) {
+        result["rule_breaks"] = describe_rule_breaks(character, arguments->rules, arguments->clip);
+        text += rule_breaks_text(result["rule_breaks"]);
+      }
+    } catch (const Error& error) {
+      throw error.in_file(arguments->file);
+    }
+    print_result(common, text, result);
   });
 }
 

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 
 #include "mien/core/error.h"
 #include "pose/small_face.h"
@@ -52,7 +51,6 @@ TEST(RegionRules, finds_sliders_that_move_what_they_should_not) {
   point.vertex = 6 * test::grid + 8;
   rule.region = {point};
   rule.sliders = {0};
-  rule.at_most = std::numeric_limits<double>::infinity();
   std::vector<RuleBreak> breaks = check_region_rules(face, clip, {rule});
   ASSERT_EQ(breaks.size(), 1u);
   EXPECT_EQ(breaks[0].slider, 2);

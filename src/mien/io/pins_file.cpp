@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "mien/core/error.h"
 #include "mien/io/detail/json.h"
 #include "mien/io/detail/point.h"
@@ -154,6 +156,27 @@ void read_sliders(const JsonObject& root, const Character& character, PinSet& se
   }
 }
 
+/// The vertices of the points' parts within `radius` of one of them.
+std::vector<SurfacePoint> vertices_near(const Character& character, const std::vector<SurfacePoint>& points,
+                                        double radius) {
+  std::vector<SurfacePoint> near;
+  for (int p = 0; p < static_cast<int>(character.parts.size()); ++p) {
+    const Mesh& mesh = character.parts[p].mesh;
+    for (Eigen::Index v = 0; v < mesh.positions.rows(); ++v) {
+      const Eigen::Vector3d at = mesh.positions.row(v).transpose().cast<double>();
+      const bool close = std::any_of(points.begin(), points.end(), [&](const SurfacePoint& point) {
+        return point.part == p && (position_of(mesh, mesh.positions, point) - at).norm() <= radius;
+      });
+      if (!close) continue;
+      SurfacePoint vertex;
+      vertex.part = p;
+      vertex.vertex = static_cast<int>(v);
+      near.push_back(vertex);
+    }
+  }
+  return near;
+}
+
 template <typename Function>
 auto read_json(const std::filesystem::path& path, const Function& read) {
   try {
@@ -200,6 +223,32 @@ std::vector<Tag> read_tags(const std::filesystem::path& path, const Character& c
       tags.push_back({read_point(source.object("at"), character, points), read_axes(source)});
     }
     return tags;
+  });
+}
+
+std::vector<RegionRule> read_region_rules(const std::filesystem::path& path, const Character& character) {
+  return read_json(path, [&](const JsonObject& root) {
+    root.expect_only({"rules"});
+    if (!root.has("rules") || root.json()["rules"].empty())
+      throw io_error("file", "has no \"rules\"",
+                     R"(give {"rules": [{"region": [POINT], "sliders": [NAME]}]})");
+    detail::PointReader points(character);
+    std::vector<RegionRule> rules;
+    for (const JsonObject& source : root.objects("rules")) {
+      source.expect_only({"name", "region", "radius", "sliders", "at_most"});
+      RegionRule rule;
+      rule.name = source.text_or("name", fmt::format("{}", rules.size() + 1));
+      for (const JsonObject& point : source.objects("region"))
+        rule.region.push_back(read_point(point, character, points));
+      if (rule.region.empty()) throw io_error(source.place(), "has no \"region\"", "give one or more points");
+      const double radius = source.number_or("radius", 0);
+      if (radius > 0) rule.region = vertices_near(character, rule.region, radius);
+      rule.sliders = sliders_named(source, "sliders", character);
+      rule.at_most = source.number_or("at_most", rule.at_most);
+      if (!(rule.at_most >= 0)) throw io_error(source.place_of("at_most"), "is negative", "0 or more");
+      rules.push_back(rule);
+    }
+    return rules;
   });
 }
 

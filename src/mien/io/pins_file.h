@@ -1,5 +1,5 @@
 #pragma once
-/// The pins file and the tags file: what is held of a face, see docs/io.md.
+/// The pins file, the tags file and the rules file: what is held of a face, and what may move it.
 
 #include <filesystem>
 #include <string>
@@ -7,6 +7,7 @@
 
 #include "mien/character/character.h"
 #include "mien/character/pin.h"
+#include "mien/character/region_rule.h"
 
 namespace mien {
 
@@ -43,5 +44,10 @@ PinSet read_pins(const std::filesystem::path& path, const Character& character);
 /// {"tags": [{"at": POINT, "axes": "xyz"}]}
 ///   throws  as read_pins
 std::vector<Tag> read_tags(const std::filesystem::path& path, const Character& character);
+
+/// {"rules": [{"name": "lids", "region": [POINT, ...], "radius": 0.1, "sliders": [NAME, ...], "at_most": 0.5}]}: the region is the
+/// vertices of its points' parts within `radius` (0: the points alone); without "at_most" any distance.
+///   throws  as read_pins
+std::vector<RegionRule> read_region_rules(const std::filesystem::path& path, const Character& character);
 
 }  // namespace mien

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "mien/character/character.h"
+#include "mien/character/region_rule.h"
 
 namespace mien {
 
@@ -32,15 +33,6 @@ struct Interference {
 ///   throws  invalid_input: no sliders
 ///   cost    vertices x #sliders^2; memory: vertices x #sliders floats
 Interference interference(const Character& character, double least = 0.1);
-
-/// "Only these sliders may move this region, and by at most so much."
-struct RegionRule {
-  std::string name;
-  std::vector<SurfacePoint> region;
-  std::vector<int> sliders;  ///< those that may
-  /// How far a point may move from rest, the character's unit; infinite: any.
-  double at_most = 0;
-};
 
 struct RuleBreak {
   int rule = 0;
