@@ -28,6 +28,7 @@ void add_inspect(CLI::App& app, Common& common);
 void add_assemble(CLI::App& app, Common& common);
 void add_transfer(CLI::App& app, Common& common);
 void add_render(CLI::App& app, Common& common);
+void add_evaluate(CLI::App& app, Common& common);
 void add_landmarks(CLI::App& app, Common& common);
 void add_retarget(CLI::App& app, Common& common);
 void add_rename(CLI::App& app, Common& common);

@@ -8,7 +8,7 @@
 #include "command.h"
 #include "mien/character/sliders.h"
 #include "mien/core/error.h"
-#include "mien/evaluate/evaluate.h"
+#include "mien/evaluate/posed_character.h"
 #include "mien/io/load.h"
 #include "mien/io/pins_file.h"
 #include "mien/io/weights_file.h"
@@ -69,31 +69,9 @@ std::string as_text(const Character& character, const SolvePinsResult& result, c
   return text;
 }
 
-/// The character with the posed surface as its neutral, and nothing that could move it again.
-Character frozen(const Character& character, const RigPose& pose) {
-  Character still = character;
-  const std::vector<Points> posed = evaluate(character, pose_of(character, pose));
-  for (std::size_t p = 0; p < still.parts.size(); ++p) {
-    Part& part = still.parts[p];
-    part.mesh.positions = posed[p];
-    part.mesh.normals.resize(0, 3);
-    part.mesh.tangents.resize(0, 4);
-    part.node = part.skin = -1;
-    part.skin_weights = {};
-  }
-  still.nodes.clear();
-  still.skins.clear();
-  still.shapes.clear();
-  still.sliders.clear();
-  still.correctives.clear();
-  still.expressions.clear();
-  still.clips.clear();
-  return still;
-}
-
 void write_pose(const Character& character, const RigPose& pose, const std::filesystem::path& output) {
   if (output.extension() == ".json") return write_weights(pose.sliders, character, output);
-  save(frozen(character, pose), output);
+  save(posed_character(character, pose_of(character, pose)), output);
 }
 
 void run(const Arguments& arguments, const Common& common) {

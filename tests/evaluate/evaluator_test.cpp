@@ -267,7 +267,6 @@ TEST(Evaluator, BakeGivesWhatSingleFramesGive) {
       if (!is_supported(set)) continue;
       for (const DeltaPrecision precision : {DeltaPrecision::exact, DeltaPrecision::compact}) {
         Evaluator evaluator(character, with(set, precision));
-        const std::size_t blocks = 48 * evaluator.block_count();
         std::vector<float> frames(poses.size() * 3 * evaluator.vertex_count()), single;
         evaluator.bake(poses, frames);
         for (const Pose& pose : poses) {

@@ -99,6 +99,7 @@ inline Character full_character() {
   skin.name = "rig";
   skin.joints = {0, 1, 2, 3, 4, 5};
   skin.skeleton = 0;
+  skin.method = SkinningMethod::dual_quaternion;
   for (int j = 0; j < 6; ++j) skin.inverse_bind.push_back(Eigen::Matrix4d::Identity() * 1.0);
   skin.inverse_bind[3](0, 3) = 2.5;
   c.skins.push_back(skin);

@@ -204,6 +204,7 @@ inline void expect_same(const Character& a, const Character& b) {
   for (std::size_t s = 0; s < a.skins.size(); ++s) {
     EXPECT_EQ(a.skins[s].joints, b.skins[s].joints);
     EXPECT_EQ(a.skins[s].inverse_bind, b.skins[s].inverse_bind);
+    EXPECT_EQ(a.skins[s].method, b.skins[s].method);
     EXPECT_EQ(a.skins[s].has_inverse_bind, b.skins[s].has_inverse_bind);
     EXPECT_EQ(a.skins[s].skeleton, b.skins[s].skeleton);
   }

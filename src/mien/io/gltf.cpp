@@ -173,6 +173,8 @@ void SceneWriter::write_skins() {
     if (!skin.name.empty()) json["name"] = skin.name;
     json["joints"] = skin.joints;
     if (skin.skeleton >= 0 && is_above_all(skin.skeleton, skin.joints)) json["skeleton"] = skin.skeleton;
+    if (skin.method == SkinningMethod::dual_quaternion)
+      json["extensions"][detail::vendor_extension]["method"] = "dualQuaternion";
     skins.push_back(std::move(json));
   }
 }
@@ -282,7 +284,7 @@ void write_extension_lists(const Character& character, const GltfBuilder& builde
   const Json vendor = detail::vendor_root(character);
   if (!vendor.empty()) root["extensions"][detail::vendor_extension] = vendor;
   bool within = false;
-  for (const char* list : {"meshes", "animations"})
+  for (const char* list : {"meshes", "skins", "animations"})
     for (const Json& element : root.value(list, Json::array()))
       within = within ||
                (element.contains("extensions") && element["extensions"].contains(detail::vendor_extension));

@@ -140,6 +140,7 @@ CarriedSkeleton carry_skeleton(const Character& source, const SpaceMap& map, int
     result.nodes.push_back(std::move(node));
   }
   result.skin.name = source.skins.empty() ? "" : source.skins.front().name;
+  if (!source.skins.empty()) result.skin.method = source.skins.front().method;
   for (std::size_t j = 0; j < joints.nodes.size(); ++j) {
     result.skin.inverse_bind.push_back(carried_bind[j].inverse());
     result.skin.joints.push_back(result.node_of[at(joints.nodes[j])]);

@@ -34,4 +34,7 @@ struct MeshData {
 /// Cost: linear in the accessors. `skinned`: whether to read influences.
 MeshData read_mesh(GltfDocument& document, int mesh, bool skinned);
 
+/// The text of all members of `source` but these, and but what MIEN_character says of it; empty when there are none.
+std::string others_but_vendor(const JsonObject& source, std::initializer_list<const char*> keys);
+
 }  // namespace mien::detail

@@ -43,12 +43,7 @@ Clip ClipReader::read(const JsonObject& animation) {
   const std::vector<JsonObject> samplers = animation.objects("samplers");
   for (const JsonObject& channel : animation.objects("channels")) read_channel(channel, samplers, clip);
   read_vendor(animation, clip);
-  Json carried = carried_json(animation.others({"name", "samplers", "channels"}), animation.place());
-  if (carried.contains("extensions") && carried["extensions"].is_object()) {
-    carried["extensions"].erase(vendor_extension);
-    if (carried["extensions"].empty()) carried.erase("extensions");
-  }
-  if (!carried.empty()) clip.carried = json_text(carried);
+  clip.carried = others_but_vendor(animation, {"name", "samplers", "channels"});
   return clip;
 }
 

@@ -158,6 +158,18 @@ void read_nodes(GltfDocument& document, Character& character) {
   check_cycles(character.nodes);
 }
 
+/// What MIEN_character says of the skin; linear blend, as glTF has it, otherwise.
+SkinningMethod skinning_method(const JsonObject& skin) {
+  if (!skin.has("extensions") || !skin.object("extensions").has(vendor_extension))
+    return SkinningMethod::linear_blend;
+  const JsonObject vendor = skin.object("extensions").object(vendor_extension);
+  const std::string method = vendor.text_or("method", "linearBlend");
+  if (method == "dualQuaternion") return SkinningMethod::dual_quaternion;
+  if (method == "linearBlend") return SkinningMethod::linear_blend;
+  throw io_error(vendor.place_of("method"), fmt::format("is {}", method.substr(0, 100)),
+                 "linearBlend or dualQuaternion");
+}
+
 void read_skins(GltfDocument& document, Character& character) {
   for (std::size_t s = 0; s < document.count("skins"); ++s) {
     const JsonObject source = document.element("skins", static_cast<int>(s));
@@ -177,7 +189,8 @@ void read_skins(GltfDocument& document, Character& character) {
       for (std::size_t j = 0; j < skin.joints.size(); ++j)
         skin.inverse_bind[j] = Eigen::Map<const Eigen::Matrix4f>(table.values.data() + 16 * j).cast<double>();
     }
-    skin.carried = source.others({"name", "joints", "skeleton", "inverseBindMatrices"});
+    skin.method = skinning_method(source);
+    skin.carried = others_but_vendor(source, {"name", "joints", "skeleton", "inverseBindMatrices"});
     character.skins.push_back(std::move(skin));
   }
 }

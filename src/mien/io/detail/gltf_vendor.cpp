@@ -319,4 +319,15 @@ void read_vendor(GltfDocument& document, const std::vector<PartSource>& sources,
   }
 }
 
+std::string others_but_vendor(const JsonObject& source, std::initializer_list<const char*> keys) {
+  const std::string text = source.others(keys);
+  if (text.empty()) return text;
+  Json others = Json::parse(text);
+  if (others.contains("extensions") && others["extensions"].is_object()) {
+    others["extensions"].erase(vendor_extension);
+    if (others["extensions"].empty()) others.erase("extensions");
+  }
+  return others.empty() ? std::string() : json_text(others);
+}
+
 }  // namespace mien::detail
