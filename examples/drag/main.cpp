@@ -24,9 +24,7 @@ class Figure {
   explicit Figure(const std::string& file) : face_(mien::load(file)), renderer_(face_) {
     options_.width = 300;
     options_.height = 360;
-    mien::FrameOptions frame;
-    frame.aspect = static_cast<double>(options_.width) / options_.height;
-    options_.camera = mien::frame_head(face_, mien::evaluate(face_, mien::rest_pose(face_)), frame);
+    options_.zoom = moved_box();
   }
 
   const mien::Character& face() const { return face_; }
@@ -105,6 +103,25 @@ class Figure {
   }
 
  private:
+  /// The box of what the mouth and the brows move: the face without the neck.
+  mien::Box moved_box() const {
+    std::vector<Eigen::Vector3d> moved;
+    for (const char* name : {"browDown", "mouthSmile", "mouthFrown", "cheekPuff"})
+      for (const char side : {'L', 'R'}) {
+        const int found = mien::find_slider(face_, std::string(name) + (side == 'L' ? "_L" : "_R"));
+        const int known =
+            found >= 0 ? found
+                       : mien::find_slider(face_, std::string(name) + (side == 'L' ? "Left" : "Right"));
+        if (known >= 0) moved.push_back(at(rest(), moved_most_by(known)));
+      }
+    if (moved.empty())
+      throw mien::invalid_input("face", "has no slider named like browDown", "a face with ARKit's names");
+    mien::Box box{moved[0], moved[0]};
+    for (const Eigen::Vector3d& point : moved) box = {box.low.cwiseMin(point), box.high.cwiseMax(point)};
+    const Eigen::Vector3d room = Eigen::Vector3d(0.5, 0.45, 0.2).cwiseProduct(box.high - box.low);
+    return {box.low - room, box.high + room};
+  }
+
   mien::Character face_;
   mien::Renderer renderer_;
   mien::RenderOptions options_;
@@ -154,9 +171,11 @@ void expressions(Figure& figure) {
   figure.add("oo", "", oo);
   blend.sliders.values = 0.5 * ah.sliders.values + 0.5 * oo.sliders.values;
   const mien::SurfacePoint corner = figure.moved_most_by(figure.slider("mouthSmile", 'L'));
-  const Eigen::Vector3d goal = figure.at(blend, corner) + figure.size() * Eigen::Vector3d(0.012, 0.018, 0);
+  const Eigen::Vector3d goal = figure.at(blend, corner) + figure.size() * Eigen::Vector3d(0.008, 0.008, 0);
   figure.add("half of each", "the pull", blend, {corner}, {goal});
-  const auto result = mien::solve_pins(figure.face(), {pin_on(corner, goal)}, blend);
+  mien::SolvePinsOptions soft;
+  soft.rho = 0.02;  // near the blend rather than at the goal
+  const auto result = mien::solve_pins(figure.face(), {pin_on(corner, goal)}, blend, soft);
   figure.add("pulled at one corner", std::to_string(result.moved.size()) + " sliders move", result.pose,
              {corner}, {goal});
 }
