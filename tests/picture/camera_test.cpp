@@ -84,7 +84,7 @@ TEST(FrameHead, LeavesTheBodyOut) {
   Part body = make_sphere("body", 8);
   body.mesh.positions.col(1) = body.mesh.positions.col(1).array() * 8 - 9;
   Character character = character_of({make_sphere("skin", 8), body});
-  Shape shape{"smile", {PartDelta()}, 0};
+  Shape shape{"smile", {PartDelta()}};
   for (int v = 0; v < character.parts[0].mesh.positions.rows(); ++v) shape.parts[0].vertices.push_back(v);
   shape.parts[0].deltas = Points::Zero(character.parts[0].mesh.positions.rows(), 3);
   character.shapes.push_back(shape);
@@ -97,7 +97,7 @@ TEST(FrameHead, LeavesTheBodyOut) {
 
 TEST(FrameHead, HasRoomForTheShapes) {
   Character character = character_of({make_sphere("skin", 8)});
-  Shape open{"jawOpen", {{0, {0}, Points(1, 3), {}, {}}}, 0};
+  Shape open{"jawOpen", {{0, {0}, Points(1, 3), {}, {}}}};
   open.parts[0].deltas << 0, -0.9f - character.parts[0].mesh.positions(0, 1), 0;
   open.parts[0].deltas(0, 1) -= 0.4f;
   character.shapes.push_back(open);

@@ -38,7 +38,7 @@ TEST(Region, LandmarksComeFirstThenShapesThenParts) {
   EXPECT_NEAR(by_part.centre().norm(), 0, 1e-6);
   EXPECT_GT(by_part.high.x(), 1);
 
-  Shape pucker{"mouthPucker", {PartDelta()}, 0};
+  Shape pucker{"mouthPucker", {PartDelta()}};
   pucker.parts[0].vertices = {3, 4, 40};
   pucker.parts[0].deltas = Points::Zero(3, 3);
   pucker.parts[0].deltas(0, 0) = pucker.parts[0].deltas(1, 0) = 1;
