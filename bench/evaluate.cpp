@@ -24,6 +24,7 @@
 #include "evaluate_faces.h"
 #include "mien/core/parallel.h"
 #include "mien/evaluate/evaluator.h"
+#include "mien/io/load.h"
 #include "peers/evaluate.h"
 
 namespace {
@@ -302,7 +303,7 @@ void bench_bake(const Character& face) {
   const auto us = [&](const char* name) { return seconds_of(contenders, name) / count; };
   print_title(fmt::format("Bake of {} frames, a frame, one thread", count));
   print_row("OpenBLAS sgemm", us("OpenBLAS sgemm"), "");
-  for (const char* name : {"f32", "int16"})
+  for (const char* name : {"f32", "int16", "f32, rows", "int16, rows"})
     print_row(name, us(name), times(us("OpenBLAS sgemm"), us(name), 5.5));
 }
 
@@ -361,7 +362,7 @@ void bench_whole(const Character& face) {
   race(contenders, 2);
   print_title("Shapes and linear skinning of 4 influences, one frame");
   for (const Contender& contender : contenders)
-    print_row(contender.name, contender.seconds, "bench/blender has Blender's");
+    print_row(contender.name, contender.seconds, "Blender: bench/blender/evaluate.py");
 }
 
 void bench_growth(const Character& face, const Character& many) {
@@ -404,6 +405,8 @@ int main(int argc, char** argv) {
       wanted("many") || wanted("growth") ? mien::bench::with_correctives(face, 946) : Character{};
   fmt::print("{}, {}, one thread; minimum of many short batches.\n", machine(),
              mien::name_of(Evaluator(face).instructions()));
+  if (only == "write" && argc > 2)  // for bench/blender/evaluate.py
+    mien::save(mien::bench::with_skin(face, 60, 4), argv[2]);
   if (wanted("all")) bench_all_sliders(face);
   if (wanted("active")) bench_active(face);
   if (wanted("many")) bench_many(many);
