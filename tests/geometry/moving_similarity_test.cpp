@@ -59,6 +59,19 @@ TEST(MovingSimilarity, comes_close_to_its_points_when_it_is_hard) {
   }
 }
 
+TEST(MovingSimilarity, a_weight_counts_as_that_many_points) {
+  const PointsD from = random_points(12, 3), to = from + 0.1 * random_points(12, 4);
+  PointsD twice_from(13, 3), twice_to(13, 3);
+  twice_from << from, from.row(5);
+  twice_to << to, to.row(5);
+  Eigen::VectorXd weights = Eigen::VectorXd::Ones(12);
+  weights[5] = 2;
+  const Vector3d x(0.2, 0.1, -0.3);
+  EXPECT_LT(
+      (MovingSimilarity(from, to, 0.1, weights)(x) - MovingSimilarity(twice_from, twice_to, 0.1)(x)).norm(),
+      1e-12);
+}
+
 TEST(MovingSimilarity, stays_a_sane_map_far_away) {
   const PointsD from = random_points(30, 9), to = 2 * from + 0.1 * random_points(30, 10);
   const MovingSimilarity moving(from, to, 0.1);

@@ -81,6 +81,20 @@ TEST(surface_query, rejected_triangles_are_passed_over) {
   EXPECT_EQ(query.closest({0.4, 0.3, 2}, endless, [](int, const Vector3d&) { return false; }).triangle, -1);
 }
 
+TEST(surface_query, an_attribute_tells_close_places_apart) {
+  // Beside the cube's upper edge the top is closer; who looks to the side finds the side.
+  const Surface s = cube();
+  const PointsD normals = s.positions.array() - 0.5;
+  const SurfaceQuery query(s.positions, s.triangles);
+  const Vector3d point(0.9, 0.5, 1.05);
+  EXPECT_TRUE(query.closest(point).position.isApprox(Vector3d(0.9, 0.5, 1), 1e-9));
+  const auto alike = query.most_alike(point, 10 * Vector3d(0.5, 0, -0.2), 10 * normals);
+  EXPECT_NEAR(alike.position.x(), 1, 1e-9);
+  EXPECT_NEAR(alike.distance, (alike.position - point).norm(), 1e-12);
+  const auto plain = query.most_alike(point, Vector3d::Zero(), PointsD::Zero(normals.rows(), 3));
+  EXPECT_TRUE(plain.position.isApprox(query.closest(point).position, 1e-9));
+}
+
 TEST(surface_query, rays) {
   const Surface s = cube();
   const SurfaceQuery query(s.positions, s.triangles);

@@ -209,6 +209,7 @@ TEST(transfer, the_targets_own_uvs_stay_unless_told_otherwise) {
 TEST(transfer, a_rig_that_the_target_had_is_replaced) {
   Character source = without_joints(made("human"));
   source.shapes.resize(3);
+  source.sliders.clear();
   const Character result = transfer(source, made("human")).character;
   EXPECT_THAT(validate(result), IsEmpty());
   EXPECT_THAT(result.shapes, SizeIs(3));

@@ -4,14 +4,15 @@
 
 namespace mien {
 
-MovingSimilarity::MovingSimilarity(PointsD from, PointsD to, double softness)
-    : from_(std::move(from)), to_(std::move(to)), softness_(softness) {
+MovingSimilarity::MovingSimilarity(PointsD from, PointsD to, double softness, Eigen::VectorXd weights)
+    : from_(std::move(from)), to_(std::move(to)), softness_(softness), weights_(weights.array()) {
+  if (weights_.size() == 0) weights_.setOnes(from_.rows());
   fit_similarity(from_, to_);  // refuses what cannot be fitted, once
 }
 
 Similarity MovingSimilarity::at(const Eigen::Vector3d& x) const {
   const Eigen::ArrayXd squared = (from_.rowwise() - x.transpose()).rowwise().squaredNorm();
-  return fit_similarity(from_, to_, (squared + softness_ * softness_).square().inverse().matrix());
+  return fit_similarity(from_, to_, (weights_ / (squared + softness_ * softness_).square()).matrix());
 }
 
 }  // namespace mien

@@ -9,13 +9,14 @@
 
 namespace mien {
 
-/// Moving least squares: at x the similarity that brings `from` to `to` with weights 1 / (|x - from_i|^2 + softness^2)^2
+/// Moving least squares: at x the similarity that brings `from` to `to` with weights w_i / (|x - from_i|^2 + softness^2)^2
 /// (Schaefer et al. 2006, in space). Commutes with similarities of either side; reproduces them exactly.
 class MovingSimilarity {
  public:
   ///   from, to  #P x 3, three or more points not on a line; softness in their units, above 0
+  ///   weights   #P, above 0: areas, where points are a surface's vertices; empty: alike
   ///   throws    invalid_input: what fit_similarity refuses
-  MovingSimilarity(PointsD from, PointsD to, double softness);
+  MovingSimilarity(PointsD from, PointsD to, double softness, Eigen::VectorXd weights = {});
 
   /// The similarity at x. Cost: O(#P).
   Similarity at(const Eigen::Vector3d& x) const;
@@ -24,6 +25,7 @@ class MovingSimilarity {
  private:
   PointsD from_, to_;
   double softness_;
+  Eigen::ArrayXd weights_;
 };
 
 }  // namespace mien

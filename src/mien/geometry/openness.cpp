@@ -22,6 +22,27 @@ PointsD hemisphere(int rays) {
   return directions;
 }
 
+/// Per vertex a neighbour, the same however the mesh is turned.
+std::vector<int> some_neighbours(Eigen::Index vertices, const Triangles& triangles) {
+  std::vector<int> neighbour(static_cast<std::size_t>(vertices), -1);
+  for (Eigen::Index t = 0; t < triangles.rows(); ++t)
+    for (int k = 0; k < 3; ++k) {
+      int& of = neighbour[static_cast<std::size_t>(triangles(t, k))];
+      if (of < 0) of = triangles(t, (k + 1) % 3);
+    }
+  return neighbour;
+}
+
+/// A frame with z along `normal` and x towards `edge`.
+Eigen::Matrix3d frame_along(const Eigen::Vector3d& normal, const Eigen::Vector3d& edge) {
+  if (!(normal.norm() > 0)) return Eigen::Matrix3d::Identity();  // a vertex without triangles
+  Eigen::Vector3d x = edge - edge.dot(normal) * normal;
+  if (!(x.norm() > 1e-6 * edge.norm())) x = normal.unitOrthogonal();
+  Eigen::Matrix3d frame;
+  frame << x.normalized(), normal.cross(x.normalized()), normal;
+  return frame;
+}
+
 }  // namespace
 
 Eigen::VectorXd openness(const PointsD& positions, const Triangles& triangles, int rays) {
@@ -29,12 +50,16 @@ Eigen::VectorXd openness(const PointsD& positions, const Triangles& triangles, i
   const PointsD normals = vertex_normals(positions, triangles);
   const PointsD directions = hemisphere(rays);
   const double diagonal = (positions.colwise().maxCoeff() - positions.colwise().minCoeff()).norm();
+  const std::vector<int> neighbours = some_neighbours(positions.rows(), triangles);
   Eigen::VectorXd open(positions.rows());
   parallel_for(static_cast<std::size_t>(positions.rows()), 64, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) {
       const Eigen::Index row = static_cast<Eigen::Index>(v);
       const Eigen::Vector3d normal = normals.row(row).transpose();
-      const Eigen::Quaterniond turn = Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), normal);
+      const int next = neighbours[v];
+      const Eigen::Vector3d edge = next < 0 ? Eigen::Vector3d(Eigen::Vector3d::Zero())
+                                            : Eigen::Vector3d(positions.row(next) - positions.row(row));
+      const Eigen::Matrix3d turn = frame_along(normal, edge);
       const Eigen::Vector3d origin = positions.row(row).transpose() + 1e-4 * diagonal * normal;
       int free = 0;
       for (int r = 0; r < rays; ++r)

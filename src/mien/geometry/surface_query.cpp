@@ -31,6 +31,22 @@ struct SurfaceQuery::Scene {
 
 namespace {
 
+constexpr int no_triangle = std::numeric_limits<int>::max();
+using PointAndAttribute = Eigen::Matrix<double, 6, 1>;
+
+/// Equally close triangles: the one of the lowest number.
+bool is_closer(const SurfaceQuery::Hit& best, int triangle, double distance) {
+  return distance < best.distance || (distance == best.distance && triangle < best.triangle);
+}
+
+/// A little slack keeps equally close triangles in the search, so that the tie goes to the lowest number.
+bool shrink(RTCPointQuery& query, double distance) {
+  const float radius = static_cast<float>(distance * (1 + 1e-6));
+  if (radius >= query.radius) return false;
+  query.radius = radius;
+  return true;
+}
+
 struct ClosestSearch {
   const PointsD& positions;
   const Triangles& triangles;
@@ -45,15 +61,48 @@ bool visit_triangle(RTCPointQueryFunctionArguments* args) {
   const auto corner = [&](int k) { return Eigen::Vector3d(search.positions.row(search.triangles(t, k))); };
   const TrianglePoint found = closest_point_on_triangle(search.point, corner(0), corner(1), corner(2));
   const double distance = (found.position - search.point).norm();
-  const bool closer =
-      distance < search.best.distance || (distance == search.best.distance && t < search.best.triangle);
-  if (!closer || (search.accept && !(*search.accept)(t, found.position))) return false;
+  if (!is_closer(search.best, t, distance) || (search.accept && !(*search.accept)(t, found.position)))
+    return false;
   search.best = {t, found.barycentric, found.position, distance};
-  // A little slack keeps equally close triangles in the search, so that the tie goes to the lowest number.
-  const float radius = static_cast<float>(distance * (1 + 1e-6));
-  if (radius >= args->query->radius) return false;
-  args->query->radius = radius;
-  return true;
+  return shrink(*args->query, distance);
+}
+
+struct AlikeSearch {
+  const PointsD& positions;
+  const PointsD& attributes;
+  const Triangles& triangles;
+  PointAndAttribute point;
+  SurfaceQuery::Hit best;
+};
+
+bool visit_alike(RTCPointQueryFunctionArguments* args) {
+  auto& search = *static_cast<AlikeSearch*>(args->userPtr);
+  const int t = static_cast<int>(args->primID);
+  PointAndAttribute corner[3];
+  for (int k = 0; k < 3; ++k) {
+    const int v = search.triangles(t, k);
+    corner[k] << search.positions.row(v).transpose(), search.attributes.row(v).transpose();
+  }
+  const Eigen::Vector3d weights =
+      closest_barycentric<PointAndAttribute>(search.point, corner[0], corner[1], corner[2]);
+  const PointAndAttribute found = weights[0] * corner[0] + weights[1] * corner[1] + weights[2] * corner[2];
+  const double distance = (found - search.point).norm();
+  if (!is_closer(search.best, t, distance)) return false;
+  search.best = {t, weights, found.head<3>(), distance};
+  return shrink(*args->query, distance);
+}
+
+/// Runs `visit` over the triangles around `point`, the nearest boxes first.
+void query_around(RTCScene scene, const Eigen::Vector3d& point, double radius, RTCPointQueryFunction visit,
+                  void* search) {
+  RTCPointQuery query{};
+  query.x = static_cast<float>(point.x());
+  query.y = static_cast<float>(point.y());
+  query.z = static_cast<float>(point.z());
+  query.radius = static_cast<float>(radius);
+  RTCPointQueryContext context;
+  rtcInitPointQueryContext(&context);
+  rtcPointQuery(scene, &query, &context, visit, search);
 }
 
 void check_input(const PointsD& positions, const Triangles& triangles) {
@@ -99,7 +148,6 @@ SurfaceQuery::SurfaceQuery(const PointsD& positions, const Triangles& triangles)
                              scene_->embree_positions.data(), 0, 3 * sizeof(float), positions.rows());
   rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, scene_->triangles.data(),
                              0, 3 * sizeof(int), triangles.rows());
-  rtcSetGeometryPointQueryFunction(geometry, visit_triangle);
   rtcCommitGeometry(geometry);
   rtcAttachGeometry(scene_->scene, geometry);
   rtcReleaseGeometry(geometry);
@@ -118,16 +166,19 @@ SurfaceQuery::Hit SurfaceQuery::closest(const Eigen::Vector3d& point, double max
                                         const Accept& accept) const {
   ClosestSearch search{scene_->positions, scene_->triangles, accept ? &accept : nullptr, point, {}};
   search.best.distance = max_distance;
-  search.best.triangle = std::numeric_limits<int>::max();
-  RTCPointQuery query{};
-  query.x = static_cast<float>(point.x());
-  query.y = static_cast<float>(point.y());
-  query.z = static_cast<float>(point.z());
-  query.radius = static_cast<float>(max_distance);
-  RTCPointQueryContext context;
-  rtcInitPointQueryContext(&context);
-  rtcPointQuery(scene_->scene, &query, &context, nullptr, &search);
-  if (search.best.triangle == std::numeric_limits<int>::max()) return Hit{};
+  search.best.triangle = no_triangle;
+  query_around(scene_->scene, point, max_distance, visit_triangle, &search);
+  return search.best.triangle == no_triangle ? Hit{} : search.best;
+}
+
+SurfaceQuery::Hit SurfaceQuery::most_alike(const Eigen::Vector3d& point, const Eigen::Vector3d& attribute,
+                                           const PointsD& attributes) const {
+  AlikeSearch search{scene_->positions, attributes, scene_->triangles, {}, {}};
+  search.point << point, attribute;
+  search.best.triangle = no_triangle;
+  query_around(scene_->scene, point, std::numeric_limits<double>::infinity(), visit_alike, &search);
+  if (search.best.triangle == no_triangle) return Hit{};
+  search.best.distance = (search.best.position - point).norm();
   return search.best;
 }
 

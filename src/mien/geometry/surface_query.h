@@ -40,6 +40,13 @@ class SurfaceQuery {
   /// The closest point on triangles that `accept` takes (it sees the closest point of each candidate).
   Hit closest(const Eigen::Vector3d& point, double max_distance, const Accept& accept) const;
 
+  /// The point of the mesh that is most alike in place and in an attribute that varies over the mesh (its normal times a
+  /// length, say): the least |x - point|^2 + |a(x) - attribute|^2, a linear in every triangle. `distance` is that of the
+  /// places alone. Cost: grows with the number of triangles that are as close as the attributes differ.
+  ///   attributes  #V x 3
+  Hit most_alike(const Eigen::Vector3d& point, const Eigen::Vector3d& attribute,
+                 const PointsD& attributes) const;
+
   /// The first triangle along the ray from `origin` in `direction` (unit) between `near` and `far`.
   Hit first_along(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, double near,
                   double far) const;

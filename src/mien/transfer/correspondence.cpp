@@ -36,6 +36,8 @@ std::vector<SourcePoint> find_correspondence(const Registration& registration, c
   const SurfaceQuery guide(registration.guide, source.triangles);
   const PointsD guide_normals = triangle_normals(registration.guide, source.triangles);
   const PointsD normals = vertex_normals(target.positions, target.triangles);
+  const double normal_length = options.normal_length * registration.unit;
+  const PointsD weighed_normals = normal_length * vertex_normals(registration.guide, source.triangles);
   const auto triangle_openness = [&](int t) {
     double sum = 0;
     for (int k = 0; k < 3; ++k) sum += registration.source_openness[source.triangles(t, k)] / 3;
@@ -48,11 +50,14 @@ std::vector<SourcePoint> find_correspondence(const Registration& registration, c
       const Eigen::Vector3d position = target.positions.row(row).transpose();
       const Eigen::Vector3d normal = normals.row(row).transpose();
       const double open = registration.target_openness[row];
-      SurfaceQuery::Hit hit =
-          guide.closest(position, options.reach * registration.unit, [&](int t, const Eigen::Vector3d&) {
-            return guide_normals.row(t).dot(normal) > options.least_cosine &&
-                   same_kind(open, triangle_openness(t));
-          });
+      const auto alike = [&](int t, const Eigen::Vector3d&) {
+        return guide_normals.row(t).dot(normal) > options.least_cosine &&
+               same_kind(open, triangle_openness(t));
+      };
+      const double reach = options.reach * registration.unit;
+      SurfaceQuery::Hit hit = guide.most_alike(position, normal_length * normal, weighed_normals);
+      if (hit.distance > reach || !alike(hit.triangle, hit.position))
+        hit = guide.closest(position, reach, alike);
       points[v].accepted = hit.triangle >= 0;
       if (!points[v].accepted) hit = guide.closest(position);
       points[v].triangle = hit.triangle;

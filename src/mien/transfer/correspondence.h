@@ -22,11 +22,14 @@ struct SourcePoint {
 
 struct CorrespondenceOptions {
   double least_cosine = 0.2;  ///< between the target's and the guide's normal
-  double reach = 0.06;        ///< of the face's size: the guide further away is not the same place
+  double normal_length =
+      0.008;            ///< of the face's size: a normal's length beside places, see SurfaceQuery::most_alike
+  double reach = 0.06;  ///< of the face's size: the guide further away is not the same place
 };
 
-/// Each target vertex's closest point on the guide among triangles that face the same way and belong to the same kind
-/// of surface (outer skin or cavity by openness), so that a lip never takes its motion from the other lip.
+/// Each target vertex's closest point on the guide, in place and normal together, if it faces the same way and belongs to
+/// the same kind of surface (outer skin or cavity by openness), else the closest point that does; so a lip never takes its
+/// motion from the other lip, nor a lid's rim from its side.
 ///   returns  #V of the target
 ///   cost     one gated closest point a vertex
 std::vector<SourcePoint> find_correspondence(const Registration& registration, const Surface& source,

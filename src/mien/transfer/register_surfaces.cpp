@@ -1,5 +1,6 @@
 #include "mien/transfer/register_surfaces.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -28,22 +29,38 @@ struct Stage {
 constexpr double curve_weight = 0.033, curves_until = 0.06;
 /// A border as long as a neck's, in face sizes; eyes' and mouths' are shorter.
 constexpr double least_border = 1.0;
+/// Openness of what is seen from outside.
+constexpr double outer_skin = 0.4;
 /// Rays a vertex: twice as many place the lid and lip lines no better.
 constexpr int openness_rays = 32;
 /// While the surface is stiff this many vertices of either side say as much as all.
 constexpr int coarse_vertices = 6000;
 
 /// From the whole face's proportions down to features of a few edges.
-constexpr std::array<Stage, 10> schedule{{{3, .5, .35},
-                                          {.5, .5, .35},
-                                          {.1, .5, .35},
-                                          {.03, .15, .35},
-                                          {.01, .05, .35},
-                                          {.003, .015, .35},
-                                          {.001, .005, .12},
+constexpr std::array<Stage, 10> schedule{{{3, 2, .35},
+                                          {.5, 2, .35},
+                                          {.1, 2, .35},
+                                          {.03, .6, .35},
+                                          {.01, .2, .35},
+                                          {.003, .06, .35},
+                                          {.001, .02, .12},
                                           {2e-4, 0, .12},
                                           {5e-5, 0, .12},
-                                          {1e-5, 0, .12}}};
+                                          {3e-6, 0, .12}}};
+
+/// What normals count as in a match (detail/matching.h), in face sizes. Far from all landmarks they hold the surface from
+/// the start; near them the landmarks do, and normals only tell the sides of a lid from its rim, once it lies there.
+struct Likeness {
+  double near, far, bend;
+};
+constexpr Likeness while_stiff{0, .2, 0}, while_soft{.015, .03, .03};
+/// Where proportions differ so much that normals make the skin fold (more than this share of its triangles), the soft
+/// stages go by place alone and the last, softest one is left out.
+constexpr Likeness by_place{0, 0, 0};
+constexpr double most_folds = 3e-3;
+constexpr std::size_t stiff_stages = 5;
+/// Distances from the nearest landmark between which near becomes far, in face sizes.
+constexpr double near_landmarks = .08, far_from_landmarks = .3;
 
 /// How far a match may be, in face sizes: the start may be far off where there are no landmarks (a cranium), later only
 /// what lies close is the same place.
@@ -69,6 +86,18 @@ void add_landmark_wishes(const std::vector<SurfaceQuery::Hit>& at, const Triangl
     wish.along = wish.across = weight;
     wishes.push_back(wish);
   }
+}
+
+/// #V: 0 within `near` of a landmark, 1 from `far` on, smooth between.
+Eigen::VectorXd far_from(const PointsD& landmarks, const PointsD& positions, double near, double far) {
+  Eigen::VectorXd result(positions.rows());
+  for (Eigen::Index v = 0; v < positions.rows(); ++v) {
+    const double distance =
+        std::sqrt((landmarks.rowwise() - positions.row(v)).rowwise().squaredNorm().minCoeff());
+    const double t = std::clamp((distance - near) / (far - near), 0.0, 1.0);
+    result[v] = t * t * (3 - 2 * t);
+  }
+  return result;
 }
 
 /// What all stages share: the two surfaces, their curves and the landmarks.
@@ -97,12 +126,17 @@ struct Fitting {
   }
 
   /// All that pulls at the source when it lies at `positions`.
-  std::vector<detail::Wish> wishes(const PointsD& positions, const Stage& stage, double reach) const {
-    const detail::MatchSurface moving(positions, source.triangles, result.source_openness, masses, boundary);
+  std::vector<detail::Wish> wishes(const PointsD& positions, const Stage& stage, const Likeness& likeness,
+                                   double reach) const {
+    detail::MatchSurface moving(positions, source.triangles, result.source_openness, masses, boundary);
+    moving.far = far_from(goals, positions, near_landmarks, far_from_landmarks);
     const bool coarse = stage.stiffness >= curves_until;
     detail::MatchOptions match;
     match.least_reach = reach;
     match.tangential = stage.tangential;
+    match.normal_length = likeness.near;
+    match.far_normal_length = likeness.far;
+    match.bend_length = likeness.bend;
     match.most_vertices = coarse ? coarse_vertices : std::numeric_limits<int>::max();
     std::vector<detail::Wish> all = detail::match_both_ways(moving, fixed, match);
     add_landmark_wishes(landmarks, source.triangles, goals, options.landmark_trust * stage.landmarks / 68,
@@ -115,20 +149,34 @@ struct Fitting {
     return all;
   }
 
+  /// The share of the outer skin's triangles that are turned over against the source.
+  double folded(const PointsD& positions) const {
+    const auto normal = [&](const PointsD& p, Eigen::Index t) {
+      const Eigen::Vector3d a = p.row(source.triangles(t, 0)).transpose();
+      return (p.row(source.triangles(t, 1)).transpose() - a)
+          .cross(p.row(source.triangles(t, 2)).transpose() - a)
+          .eval();
+    };
+    Eigen::Index skin = 0, turned = 0;
+    for (Eigen::Index t = 0; t < source.triangles.rows(); ++t) {
+      double open = 1;
+      for (int k = 0; k < 3; ++k) open = std::min(open, result.source_openness[source.triangles(t, k)]);
+      if (open < outer_skin) continue;
+      ++skin;
+      turned += normal(positions, t).dot(result.similarity.rotation * normal(source.positions, t)) < 0;
+    }
+    return static_cast<double>(turned) / static_cast<double>(std::max<Eigen::Index>(skin, 1));
+  }
+
   /// Moves what lies far from all landmarks by quadratic maps of the whole skin.
   void fit_whole(PointsD& positions) const {
     constexpr int rounds = 4;
-    constexpr double ridge = 1e-4, reach = 0.3, near = 0.15, far = 0.6;
+    constexpr double ridge = 1e-4, reach = 0.3, near = 0.15, distant = 0.6;
     const Stage whole{schedule[0].stiffness, 1, 0.1};
     for (int round = 0; round < rounds; ++round) {
-      PointsD shift = detail::fit_polynomial(positions, wishes(positions, whole, reach), ridge);
-      for (Eigen::Index v = 0; v < shift.rows(); ++v) {
-        const double distance =
-            std::sqrt((goals.rowwise() - positions.row(v)).rowwise().squaredNorm().minCoeff());
-        const double t = std::clamp((distance - near) / (far - near), 0.0, 1.0);
-        shift.row(v) *= t * t * (3 - 2 * t);
-      }
-      positions += shift;
+      const PointsD shift =
+          detail::fit_polynomial(positions, wishes(positions, whole, while_stiff, reach), ridge);
+      positions += far_from(goals, positions, near, distant).asDiagonal() * shift;
     }
   }
 };
@@ -147,9 +195,11 @@ Registration register_surfaces(const Surface& source, const Surface& target, con
 
   result.source_openness = openness(source.positions, source.triangles, openness_rays);
   result.target_openness = openness(target.positions, target.triangles, openness_rays);
-  const detail::MatchSurface fixed(
+  detail::MatchSurface fixed(
       fixed_points, target.triangles, result.target_openness, normalised_areas(target),
       boundary_vertices(static_cast<std::size_t>(fixed_points.rows()), target.triangles));
+
+  fixed.far = far_from(goals, fixed_points, near_landmarks, far_from_landmarks);
 
   Fitting fitting{source, {fixed_points, target.triangles}, fixed, goals, result, options, {}, {}, {}, {},
                   {}};
@@ -158,11 +208,22 @@ Registration register_surfaces(const Surface& source, const Surface& target, con
   PointsD start = spline(source.positions);
   fitting.fit_whole(start);
   const detail::DisplacementSolver solver(start, source.triangles);
-  PointsD u = PointsD::Zero(start.rows(), 3);
-  for (std::size_t s = 0; s < schedule.size(); ++s) {
-    report_progress(options.progress, "registering", static_cast<double>(s) / schedule.size());
-    const Stage& stage = schedule[s];
-    u = solver.solve(stage.stiffness, fitting.wishes(start + u, stage, reach_at(s)), u);
+  std::size_t done = 0;
+  const auto run = [&](PointsD u, std::size_t end, const Likeness& likeness) {
+    for (std::size_t s = done; s < end; ++s) {
+      report_progress(options.progress, "registering", static_cast<double>(s) / schedule.size());
+      const Stage& stage = schedule[s];
+      u = solver.solve(stage.stiffness, fitting.wishes(start + u, stage, likeness, reach_at(s)), u);
+    }
+    return u;
+  };
+  const PointsD stiff = run(PointsD::Zero(start.rows(), 3), stiff_stages, while_stiff);
+  done = stiff_stages;
+  PointsD u = run(stiff, schedule.size(), while_soft);
+  const double folds = fitting.folded(start + u);
+  if (folds > most_folds) {
+    const PointsD plain = run(stiff, schedule.size() - 1, by_place);
+    if (fitting.folded(start + plain) < folds) u = plain;
   }
   result.guide = ((start + u) * result.unit).rowwise() + centre;
   return result;

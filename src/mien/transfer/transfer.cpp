@@ -8,6 +8,7 @@
 
 #include "mien/core/error.h"
 #include "mien/core/parallel.h"
+#include "mien/geometry/laplacian.h"
 #include "mien/geometry/moving_similarity.h"
 #include "mien/geometry/thin_plate_spline.h"
 #include "mien/transfer/carry_skeleton.h"
@@ -34,11 +35,11 @@ constexpr double least_delta = 1e-5;
 /// Radius over which areas are compared for the local scale, relative to the face's size.
 constexpr double scale_radius = 0.2;
 
-/// Points of the guide that maps of space go through: the dense spline through the first, joints through all.
+/// Points of the guide: the dense spline goes through the first, contacts look at all.
 constexpr std::size_t spline_samples = 500;
 constexpr int most_samples = 1000;
 /// The blur of each point on the joints, relative to the face's size.
-constexpr double joint_softness = 0.03;
+constexpr double joint_softness = 0.005;
 
 /// One transfer on its way: each step reads what the steps before left and adds its own.
 class Run {
@@ -262,13 +263,18 @@ void Run::place_joints() {
       return std::cbrt(std::abs(landmark_spline_->jacobian(x).determinant()));
     };
   } else {
-    const std::vector<int>& samples = maps_.samples;
     const detail::PiecePoints inner = detail::piece_points(piece_input(), plans_);
-    PointsD from(static_cast<Eigen::Index>(samples.size()) + inner.aligned.rows(), 3), to(from.rows(), 3);
-    from << maps_.aligned(samples, Eigen::all), inner.aligned;
-    to << registration_.guide(samples, Eigen::all), inner.target;
-    const auto local = std::make_shared<MovingSimilarity>(std::move(from), std::move(to),
-                                                          joint_softness * registration_.unit);
+    const Eigen::Index skin = maps_.aligned.rows(), all = skin + inner.aligned.rows();
+    PointsD from(all, 3), to(all, 3);
+    from << maps_.aligned, inner.aligned;
+    to << registration_.guide, inner.target;
+    // A vertex counts by its area, so that dense eyes do not outweigh what lies nearer; a piece's point as a thousandth
+    // of the skin.
+    Eigen::VectorXd weights = Eigen::VectorXd::Constant(all, 1e-3);
+    const Eigen::VectorXd areas = vertex_areas(maps_.aligned, source_surface_.surface.triangles);
+    weights.head(skin) = (areas / areas.sum()).cwiseMax(1e-9);
+    const auto local = std::make_shared<MovingSimilarity>(
+        std::move(from), std::move(to), joint_softness * registration_.unit, std::move(weights));
     map.position = [local, &similarity](const Eigen::Vector3d& x) { return (*local)(similarity(x)); };
     map.rotation = [&similarity](const Eigen::Vector3d&) { return similarity.rotation; };
     map.scale = [local, &similarity](const Eigen::Vector3d& x) {

@@ -3,6 +3,7 @@
 // same rotation about its own centre and the same translation, scaled. Only what bends on the source (a tongue) bends.
 #include "mien/transfer/detail/inner_pieces.h"
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
@@ -400,15 +401,22 @@ std::vector<PiecePlan> plan_pieces(const PieceInput& in) {
 
 PiecePoints piece_points(const PieceInput& in, const std::vector<PiecePlan>& plans) {
   std::vector<Eigen::RowVector3d> aligned, target;
-  const auto add_box = [](const PointsD& points, std::vector<Eigen::RowVector3d>& list) {
-    const Eigen::RowVector3d low = points.colwise().minCoeff(), high = points.colwise().maxCoeff();
+  // Boxes along the head's own axes: turning a head turns its boxes.
+  const PointsD centred = in.warped_source.rowwise() - in.warped_source.colwise().mean();
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> head(centred.transpose() * centred);
+  const Eigen::Matrix3d axes = head.eigenvectors();
+  const auto add_box = [&](const PointsD& points, std::vector<Eigen::RowVector3d>& list) {
+    const PointsD along = points * axes;
+    const Eigen::RowVector3d low = along.colwise().minCoeff(), high = along.colwise().maxCoeff();
     const Eigen::RowVector3d middle = (low + high) / 2;
+    const std::size_t first = list.size();
     list.push_back(middle);
     for (int axis = 0; axis < 3; ++axis)
       for (const double side : {low[axis], high[axis]}) {
         list.push_back(middle);
         list.back()[axis] = side;
       }
+    for (std::size_t i = first; i < list.size(); ++i) list[i] = list[i] * axes.transpose();
   };
   for (const PiecePlan& plan : plans) {
     if (plan.way != PiecePlan::Way::donors || !plan.same_kind) continue;

@@ -67,7 +67,7 @@ struct PieceInput {
 std::vector<PiecePlan> plan_pieces(const PieceInput& input);
 
 /// Points of pieces that are the same thing on both sides, for maps of space to go through: the middles of each piece's
-/// box and of its sides, source (after the similarity) to target. They tell where joints go inside the head, where the
+/// box and of its sides (along the head's principal axes), source (after the similarity) to target. They tell where joints go inside the head, where the
 /// skin says little.
 struct PiecePoints {
   PointsD aligned, target;

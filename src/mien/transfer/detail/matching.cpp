@@ -36,15 +36,40 @@ Asking asking(const MatchSurface& surface, int most) {
   return {step, (all + step - 1) / step};
 }
 
+/// Normals times what a difference of them counts as.
+PointsD weighed_normals(const MatchSurface& surface, const MatchOptions& options) {
+  if (surface.far.size() == 0) return options.normal_length * surface.normals;
+  const Eigen::VectorXd length =
+      (options.normal_length + (options.far_normal_length - options.normal_length) * surface.far.array())
+          .matrix();
+  return length.asDiagonal() * surface.normals;
+}
+
+std::vector<SurfaceQuery::Hit> nearest(const MatchSurface& from, const MatchSurface& to, const Asking& ask,
+                                       const MatchOptions& options) {
+  std::vector<SurfaceQuery::Hit> hits(static_cast<std::size_t>(ask.count));
+  const bool by_normals = options.normal_length > 0 || options.far_normal_length > 0;
+  PointsD from_normals, to_normals;
+  if (by_normals) {
+    from_normals = weighed_normals(from, options);
+    to_normals = weighed_normals(to, options);
+  }
+  parallel_for(hits.size(), 64, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const Eigen::Vector3d point = from.positions.row(ask.vertex(i)).transpose();
+      hits[i] = by_normals
+                    ? to.query.most_alike(point, from_normals.row(ask.vertex(i)).transpose(), to_normals)
+                    : to.query.closest(point);
+    }
+  });
+  return hits;
+}
+
 /// For each asking vertex of `from` its match on `to`; triangle -1 where the gates reject.
 std::vector<SurfaceQuery::Hit> match(const MatchSurface& from, const MatchSurface& to,
                                      const MatchOptions& options) {
   const Asking ask = asking(from, options.most_vertices);
-  std::vector<SurfaceQuery::Hit> hits(static_cast<std::size_t>(ask.count));
-  parallel_for(hits.size(), 64, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i)
-      hits[i] = to.query.closest(from.positions.row(ask.vertex(i)).transpose());
-  });
+  std::vector<SurfaceQuery::Hit> hits = nearest(from, to, ask, options);
   std::vector<double> distances(hits.size());
   std::transform(hits.begin(), hits.end(), distances.begin(), [](const auto& hit) { return hit.distance; });
   std::nth_element(distances.begin(), distances.begin() + distances.size() / 2, distances.end());
@@ -66,6 +91,18 @@ Eigen::Vector3d smooth_normal(const MatchSurface& surface, const SurfaceQuery::H
     normal += hit.barycentric[k] * surface.normals.row(surface.triangles(hit.triangle, k)).transpose();
   const double length = normal.norm();
   return length > 0 ? Eigen::Vector3d(normal / length) : surface.triangle_normal(hit.triangle);
+}
+
+/// The tangential share of a pull onto this place.
+double across(const MatchSurface& surface, const SurfaceQuery::Hit& hit, const MatchOptions& options) {
+  double bend = 0;
+  for (int k = 0; k < 3 && options.bend_length > 0; ++k) {
+    const int a = surface.triangles(hit.triangle, k), b = surface.triangles(hit.triangle, (k + 1) % 3);
+    const double length = (surface.positions.row(a) - surface.positions.row(b)).norm();
+    if (length > 0) bend = std::max(bend, (surface.normals.row(a) - surface.normals.row(b)).norm() / length);
+  }
+  const double turn = options.bend_length * bend;
+  return options.tangential + (1 - options.tangential) * turn * turn / (1 + turn * turn);
 }
 
 }  // namespace
@@ -103,7 +140,7 @@ std::vector<Wish> match_both_ways(const MatchSurface& moving, const MatchSurface
                       hit.position,
                       smooth_normal(fixed, hit),
                       mass,
-                      options.tangential * mass});
+                      across(fixed, hit, options) * mass});
   }
   const auto backward = match(fixed, moving, options);
   const Asking backward_ask = asking(fixed, options.most_vertices);
@@ -120,7 +157,7 @@ std::vector<Wish> match_both_ways(const MatchSurface& moving, const MatchSurface
     wish.goal = fixed.positions.row(row).transpose();
     wish.axis = fixed.normals.row(row).transpose();
     wish.along = mass;
-    wish.across = options.tangential * mass;
+    wish.across = across(moving, hit, options) * mass;
     wishes.push_back(wish);
   }
   return wishes;

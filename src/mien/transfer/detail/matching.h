@@ -15,6 +15,7 @@ struct MatchSurface {
   Triangles triangles;
   Eigen::VectorXd openness, masses;
   std::vector<char> boundary;  // vertices on an open border
+  Eigen::VectorXd far;         // 0 near a landmark, 1 far from all; empty: near
   SurfaceQuery query;
 
   MatchSurface(const PointsD& positions, const Triangles& triangles, const Eigen::VectorXd& openness,
@@ -26,6 +27,12 @@ struct MatchOptions {
   double least_cosine = 0.5;  ///< of the angle between the normals
   double least_reach = 0.01;  ///< a match further than max(this, 3 x median distance) is rejected
   double tangential = 0.35;   ///< tangential share of a plane's pull
+  /// Where the surface bends by a radian within this length, the tangential share is half way to one: a lid's rim
+  /// says where it is in two directions, a cheek in one. 0: nowhere.
+  double bend_length = 0;
+  /// The match is the closest point in place and normal together, the normal times this length; `far` surfaces by
+  /// another, for there the normal alone tells how far around a crown a point lies. 0: in place alone.
+  double normal_length = 0, far_normal_length = 0;
   int most_vertices = std::numeric_limits<int>::max();  ///< of either side that ask, evenly chosen by number
 };
 
