@@ -59,7 +59,7 @@ void race(std::vector<Contender>& contenders, double seconds) {
       const double first = thread_seconds();
       contender.run();
       const double second = thread_seconds();
-      const int count = std::clamp(static_cast<int>(1e-4 / (second - first)), 1, 20);
+      const int count = std::clamp(static_cast<int>(2e-4 / (second - first)), 1, 20);
       for (int run = 0; run < count; ++run) contender.run();
       contender.seconds = std::min(contender.seconds, (thread_seconds() - second) / count);
     }
