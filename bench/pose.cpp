@@ -89,7 +89,8 @@ int moving_vertex(const Character& face, std::mt19937& random) {
   return delta.vertices[most];
 }
 
-/// A drag of `pins` pins in 100 moves of the pointer: within reach, towards random slider values, or haphazard, anywhere.
+/// A drag of `pins` pins in 100 moves of the pointer: within reach, all towards random slider values, or haphazard: one goes
+/// anywhere, the others hold.
 struct Drag {
   std::vector<Pin> pins;
   RigPose start;
@@ -122,7 +123,8 @@ struct Drag {
       for (int p = 0; p < count; ++p) {
         const double t = step / 100.0;
         const Eigen::Vector3d wild(std::sin(9 * t + p), std::cos(7 * t + 2 * p), std::sin(5 * t + 3 * p));
-        here.push_back(begin[p] + t * (haphazard ? Eigen::Vector3d(0.1 * size * wild) : way[p]));
+        here.push_back(begin[p] +
+                       t * (haphazard ? Eigen::Vector3d(p == 0 ? 0.1 * size * wild : 0 * wild) : way[p]));
       }
       goals.push_back(here);
     }

@@ -21,6 +21,36 @@ namespace {
 
 constexpr double own_diagonal = 1e-10;  // what a slider's wish to stay where it was put weighs
 
+struct VertexMove {
+  int shape = 0;
+  Eigen::Vector3f delta = Eigen::Vector3f::Zero();
+};
+
+struct VertexMoves {
+  std::vector<int> first;  // #V + 1
+  std::vector<VertexMove> moves;
+};
+
+/// Which shapes move each vertex of a part, and how.
+VertexMoves moves_by_vertex(const Character& character, int part) {
+  VertexMoves result;
+  result.first.assign(character.parts[part].mesh.vertex_count() + 1, 0);
+  const auto each = [&](const auto& visit) {
+    for (std::size_t s = 0; s < character.shapes.size(); ++s)
+      for (const PartDelta& delta : character.shapes[s].parts)
+        if (delta.part == part)
+          for (std::size_t i = 0; i < delta.vertices.size(); ++i)
+            visit(delta.vertices[i], VertexMove{static_cast<int>(s),
+                                                delta.deltas.row(static_cast<Eigen::Index>(i)).transpose()});
+  };
+  each([&](int vertex, const VertexMove&) { ++result.first[vertex + 1]; });
+  for (std::size_t v = 1; v < result.first.size(); ++v) result.first[v] += result.first[v - 1];
+  result.moves.resize(static_cast<std::size_t>(result.first.back()));
+  std::vector<int> next(result.first.begin(), result.first.end() - 1);
+  each([&](int vertex, const VertexMove& move) { result.moves[next[vertex]++] = move; });
+  return result;
+}
+
 void check_alpha(const std::optional<double>& alpha) {
   if (alpha && (!(*alpha >= 0) || !std::isfinite(*alpha)))
     throw invalid_input("alpha", "is negative or not finite", "0 or more");
@@ -45,6 +75,8 @@ struct Attenuator::Impl {
     check_alpha(options.alpha);
     slopes = shape_weight_slopes(character, tagging.sliders).sparseView();
     model = model_matrices(character, pose);
+    for (int p = 0; p < static_cast<int>(character.parts.size()); ++p)
+      moves_of_part.push_back(character.parts[p].skin < 0 ? moves_by_vertex(character, p) : VertexMoves{});
     gram = slopes.transpose() * detail::shape_products(character, pose) * slopes;
     for (const Part& part : character.parts) coordinates += 3 * static_cast<double>(part.mesh.vertex_count());
     n = static_cast<int>(gram.rows());
@@ -74,7 +106,8 @@ struct Attenuator::Impl {
   const Character& character;
   Eigen::SparseMatrix<double> slopes;  // #S x n
   std::vector<Eigen::Matrix4d> model;
-  Eigen::MatrixXd gram;  // G
+  std::vector<VertexMoves> moves_of_part;  // of parts without a skin
+  Eigen::MatrixXd gram;                    // G
   Eigen::LLT<Eigen::MatrixXd> factor;
   double coordinates = 0;
   int n = 0, next_number = 0;
@@ -96,18 +129,13 @@ Eigen::MatrixXd Attenuator::Impl::shape_rows(const SurfacePoint& point) const {
     return rows;
   }
   Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(3, static_cast<Eigen::Index>(character.shapes.size()));
-  for (std::size_t s = 0; s < character.shapes.size(); ++s)
-    for (const PartDelta& delta : character.shapes[s].parts) {
-      if (delta.part != point.part) continue;
-      for (int k = 0; k < (point.face < 0 ? 1 : 3); ++k) {
-        const int vertex = point.face < 0 ? point.vertex : part.mesh.faces[point.face][point.corners[k]];
-        const auto found = std::lower_bound(delta.vertices.begin(), delta.vertices.end(), vertex);
-        if (found == delta.vertices.end() || *found != vertex) continue;
-        const double weight = point.face < 0 ? 1 : point.barycentric[k];
-        rows.col(static_cast<Eigen::Index>(s)) +=
-            weight * delta.deltas.row(found - delta.vertices.begin()).transpose().cast<double>();
-      }
-    }
+  for (int k = 0; k < (point.face < 0 ? 1 : 3); ++k) {
+    const int vertex = point.face < 0 ? point.vertex : part.mesh.faces[point.face][point.corners[k]];
+    const double weight = point.face < 0 ? 1 : point.barycentric[k];
+    const VertexMoves& moves = moves_of_part[point.part];
+    for (int m = moves.first[vertex]; m < moves.first[vertex + 1]; ++m)
+      rows.col(moves.moves[m].shape) += weight * moves.moves[m].delta.cast<double>();
+  }
   if (part.node >= 0) rows = (model[part.node].topLeftCorner<3, 3>() * rows).eval();
   return rows;
 }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <utility>
 
@@ -13,6 +14,11 @@ namespace {
 
 constexpr int most_iterations = 200;
 constexpr double tight = 1e-12, loose = 1e-5;  // slider units
+
+/// More changes of the free set than this are dearer than a new factor.
+int most_updates(int rows) {
+  return std::max(8, rows / 4);
+}
 
 double norm(const AlignedVector& a, int count) {
   return std::sqrt(dense_kernels().dot(a.data(), a.data(), count));
@@ -43,7 +49,9 @@ void BoxQp::set_rows(const Eigen::Ref<const Eigen::MatrixXd>& b) {
     gram_.resize(few_rows() ? 0 : static_cast<std::size_t>(sliders_) * sliders_);
     cholesky_.reserve(std::min(rows_, sliders_));
     free_.reserve(sliders_);
-    changed_.reserve(sliders_);
+    changed_.reserve(padded_);
+    signs_.reserve(most_updates(rows_));
+    updates_.resize(few_rows() ? static_cast<std::size_t>(rows_) * most_updates(rows_) : 0);
     events_.reserve(static_cast<std::size_t>(4) * sliders_);
   }
   for (int j = 0; j < sliders_; ++j) {
@@ -161,19 +169,26 @@ bool BoxQp::factor_sliders() {
 /// The factor follows the sliders that became free or held, one after the other, when they are few.
 bool BoxQp::update_free_set() {
   changed_.clear();
-  for (int j = 0; j < sliders_; ++j)
-    if (slope_[j] != factored_slope_[j]) changed_.push_back(j);
+  for (int p = 0; p < padded_; p += panel_width) {
+    if (std::memcmp(slope_.data() + p, factored_slope_.data() + p, panel_width * sizeof(double)) == 0)
+      continue;
+    for (int j = p; j < p + panel_width; ++j)
+      if (slope_[j] != factored_slope_[j]) changed_.push_back(j);
+  }
   if (changed_.empty()) return true;
-  if (!few_rows() || static_cast<int>(changed_.size()) > std::max(8, rows_ / 5)) return false;
+  if (!few_rows() || static_cast<int>(changed_.size()) > most_updates(rows_)) return false;
+  signs_.clear();
+  double* vector = updates_.data();
   for (const double sign : {1.0, -1.0})  // additions first: they keep it away from singular
     for (const int j : changed_) {
       if ((slope_[j] > 0) != (sign > 0)) continue;
       const double root = std::sqrt(inverse_[j]);
-      for (int r = 0; r < rows_; ++r) column_[r] = root * entry(r, j);
-      if (!cholesky_.update(column_.data(), sign)) return false;
+      for (int r = 0; r < rows_; ++r) vector[r] = root * entry(r, j);
+      vector += rows_;
+      signs_.push_back(sign);
       factored_slope_[j] = slope_[j];
     }
-  return true;
+  return cholesky_.update(updates_.data(), signs_);
 }
 
 bool BoxQp::factor_free_set() {
@@ -218,7 +233,14 @@ double BoxQp::search_step() {
   double slope = dense_kernels().dot(residual_.data(), dy_.data(), rows_);
   double bend = dense_kernels().dot(dy_.data(), dy_.data(), rows_);
   for (int j = 0; j < sliders_; ++j) {
-    if (dv_[j] == 0 || low_[j] >= high_[j]) continue;
+    if (slope_[j] > 0 && new_slope_[j] > 0) {  // free all the way (or, with a dead zone, across it)
+      if (sparse_[j] == 0 || (v_[j] > 0) == (moved_[j] > 0)) {
+        bend += slope_[j] * dv_[j] * dv_[j];
+        continue;
+      }
+    } else if (slope_[j] == new_slope_[j] && x_[j] == new_x_[j]) {
+      continue;  // held all the way
+    }
     const double d = stiffness_[j], s = sparse_[j], low = low_[j], high = high_[j];
     if (s == 0) {
       add_events(j, low * d, high * d, bend);

@@ -78,10 +78,11 @@ class BoxQp {
   AlignedVector stiffness_, inverse_, pull_, sparse_, low_, high_;
   AlignedVector y_, v_, x_, slope_, residual_;  // the present point; v = pull + B'y
   AlignedVector dy_, dv_, moved_, new_x_, new_slope_, new_residual_;
-  AlignedVector factored_slope_, packed_, column_, sums_;
+  AlignedVector factored_slope_, packed_, column_, sums_, updates_;
   Cholesky cholesky_;
   std::vector<int> free_, changed_;
   std::vector<Event> events_;
+  std::vector<double> signs_;
   double scale_ = 0;  // what one unit of F may be worth in slider units
   bool has_factor_ = false, stale_ = true;
 };

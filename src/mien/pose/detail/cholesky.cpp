@@ -43,16 +43,21 @@ bool Cholesky::factor() {
   return true;
 }
 
-bool Cholesky::update(double* b, double sign) {
+bool Cholesky::update(double* vectors, std::span<const double> signs) {
   const DenseKernels& kernels = dense_kernels();
   for (int k = 0; k < size_; ++k) {
-    if (b[k] == 0) continue;
     double* const column = lower_.data() + static_cast<std::size_t>(k) * stride_;
-    const double old = column[k], square = old * old + sign * b[k] * b[k];
-    if (!(square > 1e-14 * old * old)) return false;
-    const double root = std::sqrt(square), c = root / old, s = b[k] / old;
-    column[k] = root;
-    kernels.rotate(column + k + 1, b + k + 1, c, s, sign, size_ - k - 1);
+    double* b = vectors;
+    for (const double sign : signs) {
+      if (b[k] != 0) {
+        const double old = column[k], square = old * old + sign * b[k] * b[k];
+        if (!(square > 1e-14 * old * old)) return false;
+        const double root = std::sqrt(square), c = root / old, s = b[k] / old;
+        column[k] = root;
+        kernels.rotate(column + k + 1, b + k + 1, c, s, sign, size_ - k - 1);
+      }
+      b += size_;
+    }
   }
   return true;
 }
@@ -60,14 +65,27 @@ bool Cholesky::update(double* b, double sign) {
 void Cholesky::solve(double* b) const {
   const DenseKernels& kernels = dense_kernels();
   const double* const l = lower_.data();
-  for (int k = 0; k < size_; ++k) {
-    const double* column = l + static_cast<std::size_t>(k) * stride_;
-    b[k] /= column[k];
-    kernels.add_scaled(b + k + 1, column + k + 1, -b[k], size_ - k - 1);
+  const auto column = [&](int k) { return l + static_cast<std::size_t>(k) * stride_; };
+  int k = 0;
+  for (; k + 8 <= size_; k += 4) {  // four columns a pass: their own triangle first
+    for (int i = 0; i < 4; ++i) {
+      b[k + i] /= column(k + i)[k + i];
+      for (int r = i + 1; r < 4; ++r) b[k + r] -= column(k + i)[k + r] * b[k + i];
+    }
+    kernels.subtract_four(b + k + 4, column(k) + k + 4, stride_, b + k, size_ - k - 4);
   }
-  for (int k = size_ - 1; k >= 0; --k) {
-    const double* column = l + static_cast<std::size_t>(k) * stride_;
-    b[k] = (b[k] - kernels.dot(column + k + 1, b + k + 1, size_ - k - 1)) / column[k];
+  for (; k < size_; ++k) {
+    b[k] /= column(k)[k];
+    for (int r = k + 1; r < size_; ++r) b[r] -= column(k)[r] * b[k];
+  }
+  for (k = size_ - 1; k >= 0; --k) {
+    double sum = 0;
+    const int below = size_ - k - 1;
+    if (below < 8)
+      for (int r = k + 1; r < size_; ++r) sum += column(k)[r] * b[r];
+    else
+      sum = kernels.dot(column(k) + k + 1, b + k + 1, below);
+    b[k] = (b[k] - sum) / column(k)[k];
   }
 }
 

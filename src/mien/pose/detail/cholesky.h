@@ -1,6 +1,8 @@
 #pragma once
 /// A Cholesky factor L L' that follows its matrix when a multiple of b b' is added or taken away.
 
+#include <span>
+
 #include "mien/pose/detail/dense_kernels.h"
 
 namespace mien::detail {
@@ -15,9 +17,10 @@ class Cholesky {
   int stride() const { return stride_; }
   /// Turns the filled-in triangle into its factor. False: it is not positive definite.
   bool factor();
-  /// L L' + sign b b', sign 1 or -1. `b` is overwritten. False: the difference is not positive definite, and the factor
-  /// is lost. Cost: 2 n^2 multiplications.
-  bool update(double* b, double sign);
+  /// L L' + sum of sign_i b_i b_i', each sign 1 or -1; `vectors` holds the b_i one after the other, size() each, and is
+  /// overwritten. False: a difference is not positive definite, and the factor is lost. Cost: 2 n^2 multiplications each; they
+  /// go column by column together, so that one waits for its square root while others work.
+  bool update(double* vectors, std::span<const double> signs);
   /// b <- (L L')^-1 b
   void solve(double* b) const;
 
