@@ -114,6 +114,7 @@ struct PinSolver::Impl {
   Eigen::VectorXd start_coordinates, coordinates, trial_coordinates;
   Eigen::VectorXd rest;  // of the sliders, as a change
   BoxQp qp;
+  std::vector<int> first_row;  // of each pin, and the end
   bool any_hard = false;
   SolvePinsResult result;
 };
@@ -206,6 +207,8 @@ void PinSolver::Impl::set_limits(const Character& character) {
 }
 
 void PinSolver::Impl::set_goals() {
+  first_row.push_back(0);
+  for (const Pin& pin : pins) first_row.push_back(first_row.back() + pin.axes.count);
   row_goal.resize(rig.row_count());
   shift.setZero(rig.row_count());
   for (std::size_t p = 0; p < pins.size(); ++p) {
@@ -218,8 +221,9 @@ void PinSolver::Impl::set_goals() {
 }
 
 void PinSolver::Impl::set_row_goals(int pin) {
-  for (int r = 0; r < rig.row_count(); ++r)
-    if (rig.pin_of(r) == pin) row_goal[r] = rig.direction_of(r).dot(pins[static_cast<std::size_t>(pin)].goal);
+  for (int r = first_row[static_cast<std::size_t>(pin)]; r < first_row[static_cast<std::size_t>(pin) + 1];
+       ++r)
+    row_goal[r] = rig.direction_of(r).dot(pins[static_cast<std::size_t>(pin)].goal);
 }
 
 void PinSolver::Impl::prepare() {
