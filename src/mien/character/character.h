@@ -17,6 +17,8 @@
 #include <vector>
 
 #include "mien/character/slider.h"
+#include "mien/character/surface_point.h"
+#include "mien/character/wire.h"
 #include "mien/geometry/mesh.h"
 
 namespace mien {
@@ -92,6 +94,9 @@ struct Shape {
   std::string name;
   std::vector<PartDelta>
       parts;  ///< ascending by part; an entry with no vertices: the file lists the shape there
+  /// What the wires have to do with it, ascending by wire; none: nothing is known. `parts` remain what the shape is: these
+  /// moves and what the wires leave over. Moving the wires of a shape moves its parts (`edit_wires`).
+  std::vector<WireMove> wires = {};
 };
 
 enum class Interpolation { step, linear, cubic_spline };
@@ -120,18 +125,6 @@ struct Clip {
   std::vector<Channel> channels;
   std::string carried;
   double duration() const;  ///< the last key's time in seconds; 0 without keys
-};
-
-/// A point that stays on a part's surface while the face moves: a convex combination of a face's corners, or
-/// one vertex.
-struct SurfacePoint {
-  int part = 0;
-  int face = -1;  ///< index into Mesh::faces, -1: `vertex` is used
-  int vertex = -1;
-  /// Weights of the face's first corners as its fan triangle `corners` has them; they sum to one.
-  Eigen::Vector3d barycentric = Eigen::Vector3d(1, 0, 0);
-  /// Which corners of the face the weights belong to (0, 1, 2 for a triangle).
-  std::array<int, 3> corners{0, 1, 2};
 };
 
 struct Landmark {
@@ -177,6 +170,7 @@ struct Character {
   std::vector<Clip> clips;
   std::vector<Landmark> landmarks;
   std::vector<LandmarkCurve> curves;
+  std::vector<Wire> wires;  ///< names are unique
   Appearance appearance;
   std::string carried;  ///< JSON object text of the file's members that mien only carries
 };

@@ -41,6 +41,7 @@ struct Pose {
   std::vector<Transform> locals;  ///< #N, local transforms of Character::nodes
   std::vector<PartShapeWeight> part_shape_weights =
       {};  ///< exceptions: a clip may animate one part's shape alone
+  std::vector<WireMove> wires = {};  ///< what wires do besides the shapes; several moves of a wire add up
 };
 
 /// The pose when nothing is animated: sliders and nodes at rest.

@@ -1,0 +1,36 @@
+#pragma once
+/// Wires drawn on a face: through picked points, or through landmarks.
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "mien/character/character.h"
+
+namespace mien {
+
+/// What a user says about a wire.
+struct WireSketch {
+  std::string name;
+  std::string feature;               ///< none: the wire's name
+  std::vector<SurfacePoint> points;  ///< four or more, in order, on one piece of surface
+  int controls = 10;                 ///< control points of the cubic B-spline, four or more
+  double range = 0;                  ///< model units; 0: as far as the curve is long
+  int turn_controls = 4;             ///< as Wire::turn_controls
+  bool geodesic = true;
+};
+
+/// The sketches as wires with their bindings. Each reference curve is fitted to the way along the surface from point to point.
+///   throws  invalid_input, naming the wire: fewer than four points or control points; points off the surface or on different
+///           pieces of it; a range that is negative, not finite or reaches nothing; two wires of one name
+///   cost    about 5 ms a wire on a face of 9,000 vertices
+std::vector<Wire> draw_wires(const Character& character, std::span<const WireSketch> sketches);
+
+/// Sketches for a face with the 68 iBUG landmarks (`ibug_1` ... `ibug_68`):
+///   15  brows, lids (upper and lower), nose bridge and base, lips (outer and inner, upper and lower), jaw (two sides, chin)
+///   22  these, and the folds from nose to mouth to jaw, cheeks, the bridge between the brows, philtrum and chin
+/// Features: brows, eyes, nose, mouth, jaw, cheeks. Sides are called L and R as the character sees them.
+///   throws  invalid_input: another count; a landmark that is missing
+std::vector<WireSketch> face_wire_sketches(const Character& character, int count = 22);
+
+}  // namespace mien
