@@ -215,13 +215,13 @@ PointsD WireBinder::trace(const std::string& name, std::span<const SurfacePoint>
   return traced;
 }
 
-SurfacePoint WireBinder::middle(const std::string& name, const SurfacePoint& from,
-                                const SurfacePoint& to) const {
+SurfacePoint WireBinder::between(const SurfacePoint& from, const SurfacePoint& to, double share) const {
   const std::array<SurfacePoint, 2> ends{from, to};
-  const std::vector<int> path = surfaces_->path(name, ends);
+  const std::vector<int> path = surfaces_->path("between two points", ends);
+  const auto at = static_cast<std::size_t>(std::lround(std::clamp(share, 0.0, 1.0) * (path.size() - 1.0)));
   SurfacePoint point;
   point.part = from.part;
-  point.vertex = surfaces_->of(from.part).weld.representative[path[path.size() / 2]];
+  point.vertex = surfaces_->of(from.part).weld.representative[path[at]];
   return point;
 }
 

@@ -37,8 +37,8 @@ class WireBinder {
   ///   throws  invalid_input: fewer than two points; points on different pieces of the surface
   PointsD trace(const std::string& name, std::span<const SurfacePoint> points) const;
 
-  /// The vertex halfway along that way.
-  SurfacePoint middle(const std::string& name, const SurfacePoint& from, const SurfacePoint& to) const;
+  /// The vertex at a `share` of that way, 0 to 1.
+  SurfacePoint between(const SurfacePoint& from, const SurfacePoint& to, double share) const;
 
   /// The wire's bindings by its ranges and falloff.
   ///   throws  as above; a range that is not positive, a falloff that is not ascending in x or outside of [0, 1]; ranges that

@@ -83,6 +83,9 @@ Wire draw(const WireBinder& binder, const WireSketch& sketch) {
 struct Preset {
   const char *name, *feature;
   std::vector<int> landmarks;
+  /// Towards these landmarks, by `share` of the way along the surface; none: the landmarks themselves.
+  std::vector<int> towards = {};
+  double share = 0;
 };
 
 const std::vector<Preset>& presets() {
@@ -102,12 +105,12 @@ const std::vector<Preset>& presets() {
       {"jaw_R", "jaw", {1, 2, 3, 4, 5, 6, 7}},
       {"jaw_L", "jaw", {17, 16, 15, 14, 13, 12, 11}},
       {"chin", "jaw", {7, 8, 9, 10, 11}},
+      {"lidFold_R", "eyes", {37, 38, 39, 40}, {18, 19, 21, 22}, 0.4},
+      {"lidFold_L", "eyes", {46, 45, 44, 43}, {27, 26, 24, 23}, 0.4},
       {"fold_R", "cheeks", {32, 49, 7}},
       {"fold_L", "cheeks", {36, 55, 11}},
       {"cheek_R", "cheeks", {2, 32}},
       {"cheek_L", "cheeks", {16, 36}},
-      {"glabella", "brows", {22, 28, 23}},
-      {"philtrum", "mouth", {34, 52}},
       {"mentum", "jaw", {58, 9}},
   };
   return all;
@@ -123,12 +126,11 @@ const SurfacePoint& landmark(const Character& character, int number) {
 }
 
 /// Fewer landmarks than a cubic needs: vertices halfway along the surface come between them.
-std::vector<SurfacePoint> filled(const WireBinder& binder, const std::string& name,
-                                 std::vector<SurfacePoint> points) {
+std::vector<SurfacePoint> filled(const WireBinder& binder, std::vector<SurfacePoint> points) {
   while (points.size() < 4) {
     std::vector<SurfacePoint> denser;
     for (std::size_t i = 0; i < points.size(); ++i) {
-      if (i > 0) denser.push_back(binder.middle(name, points[i - 1], points[i]));
+      if (i > 0) denser.push_back(binder.between(points[i - 1], points[i], 0.5));
       denser.push_back(points[i]);
     }
     points = std::move(denser);
@@ -161,7 +163,12 @@ std::vector<WireSketch> face_wire_sketches(const Character& character, int count
     sketch.name = preset.name;
     sketch.feature = preset.feature;
     for (const int number : preset.landmarks) sketch.points.push_back(landmark(character, number));
-    sketch.points = filled(binder, sketch.name, std::move(sketch.points));
+    for (std::size_t p = 0; p < preset.towards.size(); ++p)
+      sketch.points[p] =
+          binder.between(sketch.points[p], landmark(character, preset.towards[p]), preset.share);
+    sketch.points = filled(binder, std::move(sketch.points));
+    if (sketch.feature == "eyes")  // lids fold close by: half as far as others
+      sketch.range = length_of(binder.trace(sketch.name, sketch.points)) / 2;
     sketches.push_back(std::move(sketch));
   }
   return sketches;

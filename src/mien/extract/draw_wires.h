@@ -28,7 +28,7 @@ std::vector<Wire> draw_wires(const Character& character, std::span<const WireSke
 
 /// Sketches for a face with the 68 iBUG landmarks (`ibug_1` ... `ibug_68`):
 ///   15  brows, lids (upper and lower), nose bridge and base, lips (outer and inner, upper and lower), jaw (two sides, chin)
-///   22  these, and the folds from nose to mouth to jaw, cheeks, the bridge between the brows, philtrum and chin
+///   22  these, and the folds over the lids, the folds from nose to mouth to jaw, cheeks, and lip to chin
 /// Features: brows, eyes, nose, mouth, jaw, cheeks. Sides are called L and R as the character sees them.
 ///   throws  invalid_input: another count; a landmark that is missing
 std::vector<WireSketch> face_wire_sketches(const Character& character, int count = 22);

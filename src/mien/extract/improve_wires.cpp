@@ -17,7 +17,7 @@
 namespace mien {
 namespace {
 
-constexpr std::size_t sample_size = 1500;
+constexpr std::size_t sample_size = 3000;
 constexpr double kept_energy = 0.95;
 constexpr double longest_factor = 4;  ///< of a wire's range at the start: as far as distances are measured
 constexpr int varying_ranges = 4;
@@ -94,9 +94,9 @@ Trial::Trial(const Character& character, std::span<const Wire> wires, const Wire
         if (const int row = row_of[delta.part][delta.vertices[i]]; row >= 0)
           all.col(static_cast<Eigen::Index>(s)).segment<3>(3 * row) =
               delta.deltas.row(static_cast<Eigen::Index>(i)).transpose().cast<double>();
-  // Small expressions count too: by the root of their size, or lids would get the ranges that suit the jaw.
+  // Every expression counts alike, however small: by size lids would get the ranges that suit the jaw.
   for (Eigen::Index s = 0; s < all.cols(); ++s)
-    if (const double size = all.col(s).norm(); size > 0) all.col(s) /= std::sqrt(size);
+    if (const double size = all.col(s).norm(); size > 0) all.col(s) /= size;
   Eigen::MatrixXd weighted = all;
   for (Eigen::Index row = 0; row < rows; ++row) weighted.middleRows<3>(3 * row) *= weights[row];
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(all.transpose() * weighted);
@@ -141,15 +141,16 @@ class RangeSearch {
         wires_(wires.begin(), wires.end()) {
     for (std::size_t w = 0; w < wires_.size(); ++w) {
       longest_.push_back(longest_factor * *std::max_element(wires_[w].ranges.begin(), wires_[w].ranges.end()));
-      bind(wires_, w);
       const std::string twin = twin_name(wires_[w].name);
       const auto first = std::find_if(wires_.begin(), wires_.begin() + static_cast<std::ptrdiff_t>(w),
                                       [&](const Wire& wire) { return wire.name == twin; });
       const auto leader = static_cast<std::size_t>(first - wires_.begin());
-      if (leader < w)
+      if (leader < w) {
+        wires_[w].ranges = wires_[leader].ranges;
         groups_[group_of_[leader]].push_back(w);
-      else
+      } else
         groups_.push_back({w});
+      bind(wires_, w);
       group_of_.push_back(leader < w ? group_of_[leader] : groups_.size() - 1);
     }
     best_ = trial_.left_over(character_, wires_, options_.solver.ridge);
