@@ -36,6 +36,9 @@ int find_part(const Character& character, std::string_view name) {
 int find_shape(const Character& character, std::string_view name) {
   return find_by_name(character.shapes, name);
 }
+int find_wire(const Character& character, std::string_view name) {
+  return find_by_name(character.wires, name);
+}
 int find_node(const Character& character, std::string_view name) {
   return find_by_name(character.nodes, name);
 }

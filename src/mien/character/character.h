@@ -104,19 +104,35 @@ enum class Interpolation { step, linear, cubic_spline };
 /// One animated property. Values are interleaved by key; a cubic spline has (in-tangent, value, out-tangent)
 /// a key.
 struct Channel {
-  enum class Property { translation, rotation, scale, shape_weight, slider };
+  enum class Property {
+    translation,
+    rotation,
+    scale,
+    shape_weight,
+    slider,
+    wire_control,
+    wire_scale,
+    wire_turn
+  };
   Property property = Property::translation;
   int node = -1;    ///< for translation (3 values), rotation (unit quaternion x, y, z, w) and scale (3)
   int shape = -1;   ///< for shape_weight (1 value): index into Character::shapes
   int part = -1;    ///< shape_weight on this part alone; -1: on every part that has the shape
   int slider = -1;  ///< for slider (1 value): index into Character::sliders
+  int wire = -1;    ///< for wire_scale (s - 1, 1 value), wire_control and wire_turn (3): index into Character::wires
+  int control = -1;  ///< for wire_control and wire_turn: which of the wire's control points or turns
   Interpolation interpolation = Interpolation::linear;
   std::vector<float> times;  ///< seconds, strictly ascending
   std::vector<float> values;
+  bool moves_wire() const {
+    return property == Property::wire_control || property == Property::wire_scale ||
+           property == Property::wire_turn;
+  }
   int width() const {
-    return property == Property::rotation                                       ? 4
-           : property == Property::shape_weight || property == Property::slider ? 1
-                                                                                : 3;
+    if (property == Property::rotation) return 4;
+    const bool single = property == Property::shape_weight || property == Property::slider ||
+                        property == Property::wire_scale;
+    return single ? 1 : 3;
   }
 };
 
@@ -178,6 +194,7 @@ struct Character {
 /// Index of the element with this name, or -1.
 int find_part(const Character& character, std::string_view name);
 int find_shape(const Character& character, std::string_view name);
+int find_wire(const Character& character, std::string_view name);
 int find_node(const Character& character, std::string_view name);
 
 /// #N matrices, node space to model space, for nodes in rest. Cost: linear.

@@ -43,4 +43,15 @@ struct WireMove {
   PointsD turns;     ///< rotation vectors of the surface about the curve, to first order, radians; or no rows
 };
 
+/// What a user says about a wire.
+struct WireSketch {
+  std::string name;
+  std::string feature;               ///< none: the wire's name
+  std::vector<SurfacePoint> points;  ///< four or more, in order, on one piece of surface
+  int controls = 10;                 ///< control points of the cubic B-spline, four or more
+  double range = 0;                  ///< model units; 0: as far as the curve is long
+  int turn_controls = 4;             ///< as Wire::turn_controls
+  bool geodesic = true;
+};
+
 }  // namespace mien

@@ -2,11 +2,13 @@
 // once, at the end.
 #include "mien/evaluate/evaluate.h"
 
+#include <optional>
 #include <string>
 
 #include "mien/core/error.h"
 #include "mien/deform/shapes.h"
 #include "mien/deform/skin.h"
+#include "mien/deform/wires.h"
 #include "mien/evaluate/detail/check_pose.h"
 
 namespace mien {
@@ -36,13 +38,16 @@ PointsD to_model_space(const Character& character, const Part& part, const Point
 std::vector<Points> evaluate(const Character& character, const Pose& pose) {
   detail::check_pose(character, pose);
   const std::vector<Eigen::Matrix4d> model = model_matrices(character, pose);
+  std::optional<WireField> wires;
+  if (!pose.wires.empty()) wires.emplace(character, character.wires);
   ShapeWeights weights(character.shapes.size());
   std::vector<Points> posed;
   posed.reserve(character.parts.size());
   for (std::size_t p = 0; p < character.parts.size(); ++p) {
     const int part = static_cast<int>(p);
     detail::weights_on_part(pose, part, weights.values);
-    const PointsD shaped = add_shapes(character, part, weights);
+    PointsD shaped = add_shapes(character, part, weights);
+    if (wires) wires->add(part, pose.wires, shaped);
     posed.push_back(to_model_space(character, character.parts[p], shaped, model).cast<float>());
   }
   return posed;

@@ -1,5 +1,5 @@
 #pragma once
-/// Pose in, surface out: shapes, then skinning.
+/// Pose in, surface out: shapes and wires, then skinning.
 
 #include <vector>
 
@@ -14,7 +14,7 @@ namespace mien {
 ///   finite, a part
 ///            that names a skin, joint or node out of range
 ///   cost     linear in moved vertices x active shapes, plus #V x influences
-/// Positions are neutral + sum of shape weight x delta, then skinned by `joint matrix x inverse bind` as the part's
+/// Positions are neutral + sum of shape weight x delta + what the pose's wires add, then skinned by `joint matrix x inverse bind` as the part's
 /// skin says; a part without a skin is carried by its node.
 std::vector<Points> evaluate(const Character& character, const Pose& pose);
 

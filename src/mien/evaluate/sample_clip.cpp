@@ -28,6 +28,10 @@ Target target_of(const Character& character, const Channel& channel) {
       return {"shape ", channel.shape, character.shapes.size()};
     case Channel::Property::slider:
       return {"slider ", channel.slider, character.sliders.size()};
+    case Channel::Property::wire_control:
+    case Channel::Property::wire_scale:
+    case Channel::Property::wire_turn:
+      return {"wire ", channel.wire, character.wires.size()};
     default:
       return {"node ", channel.node, character.nodes.size()};
   }
@@ -45,6 +49,31 @@ void check_channel(const Character& character, const Clip& clip, std::size_t ind
   if (target < 0 || static_cast<std::size_t>(target) >= count)
     throw invalid_input(place_of(clip, index), std::string("animates ") + kind + std::to_string(target),
                         "one from 0 to " + std::to_string(static_cast<int>(count) - 1));
+  if (channel.property != Channel::Property::wire_control && channel.property != Channel::Property::wire_turn)
+    return;
+  const Wire& wire = character.wires[channel.wire];
+  const int rows =
+      channel.property == Channel::Property::wire_control ? wire.curve.control_count() : wire.turn_controls;
+  if (channel.control < 0 || channel.control >= rows)
+    throw invalid_input(place_of(clip, index),
+                        "animates control point " + std::to_string(channel.control) + " of wire " + wire.name,
+                        "one from 0 to " + std::to_string(rows - 1));
+}
+
+/// Adds what a channel does to a wire to the pose.
+void move_wire(const Character& character, const Channel& channel, const Value& value, Pose& pose) {
+  const Wire& wire = character.wires[channel.wire];
+  auto move = std::find_if(pose.wires.begin(), pose.wires.end(),
+                           [&](const WireMove& m) { return m.wire == channel.wire; });
+  if (move == pose.wires.end())
+    move = pose.wires.insert(move, {channel.wire, PointsD::Zero(wire.curve.control_count(), 3), 0,
+                                    PointsD::Zero(wire.turn_controls, 3)});
+  if (channel.property == Channel::Property::wire_scale)
+    move->scale = value[0];
+  else if (channel.property == Channel::Property::wire_control)
+    move->controls.row(channel.control) = value.head<3>().transpose();
+  else
+    move->turns.row(channel.control) = value.head<3>().transpose();
 }
 
 /// The row-th group of `width` values: a key's value, or its tangents for a cubic spline.
@@ -126,6 +155,7 @@ Pose sample_clip(const Character& character, const Clip& clip, double seconds) {
   Pose pose = pose_of(character, rig_of(character, clip, values));
   for (std::size_t c = 0; c < values.size(); ++c) {
     const Channel& channel = clip.channels[c];
+    if (channel.moves_wire()) move_wire(character, channel, values[c], pose);
     if (channel.property != Channel::Property::shape_weight) continue;
     if (channel.part < 0)
       pose.shape_weights.values[channel.shape] = values[c][0];

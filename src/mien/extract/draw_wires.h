@@ -9,17 +9,6 @@
 
 namespace mien {
 
-/// What a user says about a wire.
-struct WireSketch {
-  std::string name;
-  std::string feature;               ///< none: the wire's name
-  std::vector<SurfacePoint> points;  ///< four or more, in order, on one piece of surface
-  int controls = 10;                 ///< control points of the cubic B-spline, four or more
-  double range = 0;                  ///< model units; 0: as far as the curve is long
-  int turn_controls = 4;             ///< as Wire::turn_controls
-  bool geodesic = true;
-};
-
 /// The sketches as wires with their bindings. Each reference curve is fitted to the way along the surface from point to point.
 ///   throws  invalid_input, naming the wire: fewer than four points or control points; points off the surface or on different
 ///           pieces of it; a range that is negative, not finite or reaches nothing; two wires of one name

@@ -5,10 +5,10 @@
 #include <cmath>
 #include <set>
 
-#include "mien/character/weld.h"
 #include "mien/core/error.h"
 #include "mien/core/parallel.h"
 #include "mien/deform/wires.h"
+#include "mien/extract/detail/deltas.h"
 #include "mien/extract/detail/pieces.h"
 #include "mien/extract/detail/wire_system.h"
 
@@ -47,28 +47,6 @@ std::vector<std::vector<float>> row_weights(const Character& character, const Wi
     for (std::size_t row = 0; row < vertices.size(); ++row) weights[p][row] = given[p][vertices[row]];
   }
   return weights;
-}
-
-/// A shape's displacements of one part, one row a vertex, part space.
-Points dense_delta(const Character& character, const Shape& shape, int part) {
-  Points dense = Points::Zero(character.parts[part].mesh.positions.rows(), 3);
-  for (const PartDelta& delta : shape.parts)
-    if (delta.part == part)
-      for (std::size_t i = 0; i < delta.vertices.size(); ++i)
-        dense.row(delta.vertices[i]) += delta.deltas.row(static_cast<Eigen::Index>(i));
-  return dense;
-}
-
-/// The rows of `dense` that are not zero.
-PartDelta sparse_delta(int part, const Points& dense) {
-  PartDelta delta;
-  delta.part = part;
-  for (Eigen::Index v = 0; v < dense.rows(); ++v)
-    if (dense.row(v).squaredNorm() > 0) delta.vertices.push_back(static_cast<int>(v));
-  delta.deltas.resize(static_cast<Eigen::Index>(delta.vertices.size()), 3);
-  for (std::size_t i = 0; i < delta.vertices.size(); ++i)
-    delta.deltas.row(static_cast<Eigen::Index>(i)) = dense.row(delta.vertices[i]);
-  return delta;
 }
 
 }  // namespace
@@ -194,7 +172,7 @@ WireFit Fitter::fit(const Shape& shape, std::vector<FeatureError>& features) con
 }
 
 void Fitter::fit_part(const Shape& shape, int part, WireFit& fit, std::vector<FeatureError>& features) const {
-  const Points wanted = dense_delta(character_, shape, part);
+  const Points wanted = detail::dense_delta(character_, shape, part);
   Points left = wanted, kept = Points::Zero(wanted.rows(), 3);
   for (const PartDelta& delta : fit.rebuilt)
     if (delta.part == part)
@@ -218,7 +196,7 @@ void Fitter::fit_part(const Shape& shape, int part, WireFit& fit, std::vector<Fe
     fit.kept_error += lost * lost;
     if (error > threshold_) kept.row(v) = static_cast<float>(1 - threshold_ / error) * left.row(v);
   }
-  PartDelta residual = sparse_delta(part, kept);
+  PartDelta residual = detail::sparse_delta(part, kept);
   if (!residual.vertices.empty()) fit.residual.push_back(std::move(residual));
 }
 
@@ -228,7 +206,7 @@ std::vector<PartDelta> replaced(const Character& character, const detail::Pieces
   std::vector<PartDelta> parts;
   for (std::size_t p = 0; p < character.parts.size(); ++p) {
     const int part = static_cast<int>(p);
-    Points dense = dense_delta(character, shape, part);
+    Points dense = detail::dense_delta(character, shape, part);
     for (Eigen::Index v = 0; v < dense.rows(); ++v)
       if (pieces.is_skin(part, static_cast<int>(v))) dense.row(v).setZero();
     for (const std::vector<PartDelta>* list : {&fit.rebuilt, &fit.residual})
@@ -238,7 +216,7 @@ std::vector<PartDelta> replaced(const Character& character, const detail::Pieces
             dense.row(delta.vertices[i]) += delta.deltas.row(static_cast<Eigen::Index>(i));
     const bool listed = std::any_of(shape.parts.begin(), shape.parts.end(),
                                     [&](const PartDelta& delta) { return delta.part == part; });
-    PartDelta delta = sparse_delta(part, dense);
+    PartDelta delta = detail::sparse_delta(part, dense);
     if (listed || !delta.vertices.empty()) parts.push_back(std::move(delta));
   }
   return parts;

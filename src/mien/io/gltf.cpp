@@ -271,7 +271,7 @@ Json write_images(const Appearance& appearance, GltfBuilder& builder) {
   return images;
 }
 
-void write_extension_lists(const Character& character, const GltfBuilder& builder, Json& root) {
+void write_extension_lists(const Character& character, GltfBuilder& builder, Json& root) {
   const std::set<std::string> rebuilt = {"KHR_mesh_quantization", "EXT_meshopt_compression",
                                          detail::vendor_extension};
   std::set<std::string> used, required;
@@ -281,7 +281,7 @@ void write_extension_lists(const Character& character, const GltfBuilder& builde
       for (const Json& name : root[key])
         if (name.is_string() && !rebuilt.contains(name.get<std::string>()))
           names->insert(name.get<std::string>());
-  const Json vendor = detail::vendor_root(character);
+  const Json vendor = detail::vendor_root(character, builder);
   if (!vendor.empty()) root["extensions"][detail::vendor_extension] = vendor;
   bool within = false;
   for (const char* list : {"meshes", "skins", "animations"})

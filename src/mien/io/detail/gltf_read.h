@@ -21,7 +21,15 @@ std::vector<PartSource> read_parts(GltfDocument& document, Character& character)
 void read_clips(GltfDocument& document, const std::vector<PartSource>& sources, Character& character);
 /// Sliders, correctives and expressions from the file's vendor extension, in place of one slider a shape.
 void read_sliders(const JsonObject& vendor, Character& character);
-/// N-gons, seams, groups, landmarks and curves from the vendor extension; sliders too.
+/// A point of the vendor extension on one of the meshes in use.
+SurfacePoint read_vendor_point(const JsonObject& source, const std::vector<PartSource>& sources,
+                               const Character& character);
+/// Wires and what shapes do to them, from the file's vendor extension.
+void read_wires(const JsonObject& vendor, GltfDocument& document, const std::vector<PartSource>& sources,
+                Character& character);
+/// What a channel moves of a wire; its keys are left out.
+Channel read_wire_channel(const JsonObject& source, const Character& character);
+/// N-gons, seams, groups, landmarks and curves from the vendor extension; sliders and wires too.
 void read_vendor(GltfDocument& document, const std::vector<PartSource>& sources, Character& character);
 
 /// One mesh as the file holds it: its surface, its influences and its morph targets.

@@ -58,6 +58,14 @@ void ClipReader::read_vendor(const JsonObject& animation, Clip& clip) {
              std::find(own.begin(), own.end(), character_.shapes[channel.shape].name) == own.end();
     });
   }
+  if (vendor.truth_or("still", false)) clip.channels.clear();  // there for glTF's sake alone
+  for (const JsonObject& source : vendor.objects("wires")) {
+    Channel channel = read_wire_channel(source, character_);
+    channel.interpolation = interpolation_of(source);
+    channel.times = document_.floats(source.index("input", accessors()), 1).values;
+    channel.values = document_.floats(source.index("output", accessors()), channel.width()).values;
+    clip.channels.push_back(std::move(channel));
+  }
   for (const JsonObject& source : vendor.objects("sliders")) {
     Channel channel;
     channel.property = Channel::Property::slider;

@@ -47,13 +47,15 @@ Json vendor_uv(const UvSet& uv, const SplitMesh& split, GltfBuilder& builder) {
   return description;
 }
 
+}  // namespace
+
 Json vendor_point(const SurfacePoint& point) {
   Json json = {{"mesh", point.part}};
   add_place_on_part(point, json);
   return json;
 }
 
-SurfacePoint read_point(const JsonObject& source, const std::vector<PartSource>& sources,
+SurfacePoint read_vendor_point(const JsonObject& source, const std::vector<PartSource>& sources,
                         const Character& character) {
   SurfacePoint point;
   const auto mesh = source.integer("mesh", 0, 1 << 30);
@@ -75,6 +77,8 @@ SurfacePoint read_point(const JsonObject& source, const std::vector<PartSource>&
   if (corners.size() == 3) std::copy(corners.begin(), corners.end(), point.corners.begin());
   return point;
 }
+
+namespace {
 
 /// Puts one mesh back as it was before it was split for glTF.
 class Restorer {
@@ -271,7 +275,7 @@ Json vendor_mesh(const Mesh& mesh, const SplitMesh& split, bool normals_computed
   return vendor;
 }
 
-Json vendor_root(const Character& character) {
+Json vendor_root(const Character& character, GltfBuilder& builder) {
   Json vendor = Json::object();
   for (const Landmark& landmark : character.landmarks) {
     Json json = vendor_point(landmark.at);
@@ -284,6 +288,7 @@ Json vendor_root(const Character& character) {
     vendor["curves"].push_back(std::move(json));
   }
   write_sliders(character, vendor);
+  write_wires(character, builder, vendor);
   if (!character.name.empty()) vendor["name"] = character.name;
   if (!vendor.empty()) vendor["version"] = 1;
   return vendor;
@@ -307,14 +312,15 @@ void read_vendor(GltfDocument& document, const std::vector<PartSource>& sources,
     throw io_error(vendor.place_of("version"), "is newer than 1", "read it with a newer mien");
   character.name = vendor.text_or("name", "");
   read_sliders(vendor, character);
+  read_wires(vendor, document, sources, character);
   for (const JsonObject& source : vendor.objects("landmarks"))
-    character.landmarks.push_back({source.text("name"), read_point(source, sources, character)});
+    character.landmarks.push_back({source.text("name"), read_vendor_point(source, sources, character)});
   for (const JsonObject& source : vendor.objects("curves")) {
     LandmarkCurve curve;
     curve.name = source.text("name");
     curve.count = static_cast<int>(source.integer("count", 2, 10000));
     for (const JsonObject& point : source.objects("points"))
-      curve.points.push_back(read_point(point, sources, character));
+      curve.points.push_back(read_vendor_point(point, sources, character));
     character.curves.push_back(std::move(curve));
   }
 }

@@ -25,8 +25,13 @@ SplitMesh split_seams(const Mesh& mesh);
 Json write_meshes(const Character& character, GltfBuilder& builder);
 /// The vendor extension of one mesh: what the glTF arrays do not say about its faces, seams and groups.
 Json vendor_mesh(const Mesh& mesh, const SplitMesh& split, bool normals_computed, GltfBuilder& builder);
-/// The vendor extension of the file: landmarks, curves and sliders.
-Json vendor_root(const Character& character);
+/// The vendor extension of the file: landmarks, curves, sliders and wires.
+Json vendor_root(const Character& character, GltfBuilder& builder);
+Json vendor_point(const SurfacePoint& point);
+/// Adds wires and what shapes do to them to the file's vendor extension.
+void write_wires(const Character& character, GltfBuilder& builder, Json& vendor);
+/// A channel that moves a wire, for the vendor extension of its animation.
+Json wire_channel_json(const Character& character, const Channel& channel, GltfBuilder& builder);
 /// Adds sliders, correctives and expressions to the file's vendor extension unless they are one plain slider a
 /// shape, which every glTF has.
 void write_sliders(const Character& character, Json& vendor);

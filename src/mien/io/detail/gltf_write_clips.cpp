@@ -163,6 +163,7 @@ class ClipWriter {
   void write_weights(const Clip& clip, int part);
   /// The sliders' channels and, where glTF's form animates more, the shapes that the clip itself animates.
   Json vendor(const Clip& clip) const;
+  void hold_still(const Clip& clip);
   void add(int node, const char* path, const Channel& keys);
 
   const Character& character_;
@@ -227,6 +228,9 @@ Json ClipWriter::vendor(const Clip& clip) const {
                                    {"interpolation", name_of(channel.interpolation)},
                                    {"input", builder_.add_floats(channel.times, 1, true)},
                                    {"output", builder_.add_floats(channel.values, 1)}});
+  for (const Channel& channel : clip.channels)
+    if (channel.moves_wire() && !channel.times.empty())
+      vendor["wires"].push_back(wire_channel_json(character_, channel, builder_));
   std::vector<bool> own(character_.shapes.size(), false);
   for (const Channel& channel : clip.channels)
     if (channel.property == Channel::Property::shape_weight) own[channel.shape] = true;
@@ -239,6 +243,19 @@ Json ClipWriter::vendor(const Clip& clip) const {
   for (std::size_t s = 0; s < own.size(); ++s)
     if (own[s]) vendor["shapes"].push_back(character_.shapes[s].name);
   return vendor;
+}
+
+/// glTF forbids an animation without channels: one that leaves the first part where it is says how long this one lasts.
+void ClipWriter::hold_still(const Clip& clip) {
+  const Part& part = character_.parts.at(0);
+  const Eigen::Vector3d at = part.node >= 0 ? character_.nodes[part.node].rest.translation
+                                            : Eigen::Vector3d(Eigen::Vector3d::Zero());
+  Channel still;
+  for (const Channel& channel : clip.channels)
+    if (still.times.empty()) still.times = channel.times;
+  for (std::size_t key = 0; key < still.times.size(); ++key)
+    for (int k = 0; k < 3; ++k) still.values.push_back(static_cast<float>(at[k]));
+  add(node_of_part_.at(0), "translation", still);
 }
 
 Json ClipWriter::write(const Clip& whole) {
@@ -259,7 +276,14 @@ Json ClipWriter::write(const Clip& whole) {
   if (!clip.name.empty()) animation["name"] = clip.name;
   animation["samplers"] = std::move(samplers_);
   animation["channels"] = std::move(channels_);
-  if (Json members = vendor(whole); !members.empty())
+  Json members = vendor(whole);
+  if (animation["channels"].empty() && members.contains("wires")) {
+    hold_still(whole);
+    animation["samplers"] = std::move(samplers_);
+    animation["channels"] = std::move(channels_);
+    members["still"] = true;
+  }
+  if (!members.empty())
     animation["extensions"][vendor_extension] = std::move(members);
   return animation;
 }
