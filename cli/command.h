@@ -35,6 +35,8 @@ void add_rename(CLI::App& app, Common& common);
 void add_map(CLI::App& app, Common& common);
 void add_batch(CLI::App& app, Common& common);
 void add_sample(CLI::App& app, Common& common);
+void add_wires(CLI::App& app, Common& common);
+void add_blend(CLI::App& app, Common& common);
 void add_pose(CLI::App& app, Common& common);
 void add_attenuate(CLI::App& app, Common& common);
 

@@ -34,6 +34,8 @@ class Validator {
   void check_expressions();
   void check_clips();
   void check_channel(const Channel& channel, const std::string& place);
+  void check_wires();
+  void check_wire_target(const Channel& channel, const std::string& place);
   void check_channel_target(const Channel& channel, const std::string& place);
   void check_landmarks();
   void check_point(const SurfacePoint& point, const std::string& place);
@@ -315,7 +317,43 @@ void Validator::check_expressions() {
   }
 }
 
+void Validator::check_wires() {
+  std::unordered_set<std::string> names;
+  for (const Wire& wire : character_.wires) {
+    const std::string place = "wire " + wire.name;
+    if (!names.insert(wire.name).second) add(place, "is there twice", "names are unique");
+    try {
+      require_valid(wire.curve);
+    } catch (const Error& error) {
+      add(place, error.what(), "a cubic B-spline");
+    }
+    for (const WireBinding& binding : wire.bindings)
+      in_range(binding.part, 0, character_.parts.size(), place, "part");
+  }
+  for (const Shape& shape : character_.shapes)
+    for (const WireMove& move : shape.wires)
+      if (in_range(move.wire, 0, character_.wires.size(), "shape " + shape.name, "wire")) {
+        const std::string place = "shape " + shape.name + ": wire " + character_.wires[move.wire].name;
+        check_finite(move.controls, place, "control point");
+        check_finite(move.turns, place, "turn");
+      }
+}
+
+void Validator::check_wire_target(const Channel& channel, const std::string& place) {
+  if (!in_range(channel.wire, 0, character_.wires.size(), place, "wire")) return;
+  const Wire& wire = character_.wires[channel.wire];
+  if (channel.property == Channel::Property::wire_control)
+    in_range(channel.control, 0, static_cast<std::size_t>(wire.curve.control_count()), place,
+             "control point");
+  if (channel.property == Channel::Property::wire_turn)
+    in_range(channel.control, 0, static_cast<std::size_t>(wire.turn_controls), place, "turn");
+}
+
 void Validator::check_channel_target(const Channel& channel, const std::string& place) {
+  if (channel.moves_wire()) {
+    check_wire_target(channel, place);
+    return;
+  }
   if (channel.property == Channel::Property::slider) {
     in_range(channel.slider, 0, character_.sliders.size(), place, "slider");
     return;
@@ -397,6 +435,7 @@ std::vector<Problem> Validator::run() {
     check_mesh(part, "part " + (part.name.empty() ? text_of(p) : part.name));
   }
   check_shapes();
+  check_wires();
   check_sliders();
   check_correctives();
   check_expressions();

@@ -23,16 +23,17 @@ struct WireBinding {
 /// reference curve and moves nothing; `WireMove` says how it leaves it.
 struct Wire {
   std::string name;
-  std::string feature;               ///< the group that it belongs to: "mouth"
-  BSpline curve;                     ///< the reference curve; model space, neutral, bind pose
-  std::vector<SurfacePoint> points;  ///< the surface points it was drawn through; none: given by control points
+  std::string feature;  ///< the group that it belongs to: "mouth"
+  BSpline curve;        ///< the reference curve; model space, neutral, bind pose
+  std::vector<SurfacePoint>
+      points;  ///< the surface points it was drawn through; none: given by control points
   /// Range, in model units: one for the whole curve, or values at even parameters, linear between them.
   std::vector<double> ranges;
   std::vector<Eigen::Vector2d> falloff;  ///< a drawn falloff: (x, f) by ascending x; none: (x^2 - 1)^2
   double localizing = 3;                 ///< k: the higher, the more the nearest of several wires decides
   bool geodesic = true;                  ///< distances along the surface; false: through space
-  int turn_controls = 4;                 ///< turn vectors along the curve, four or more; 0: the wire does not turn
-  std::vector<WireBinding> bindings;     ///< ascending by part
+  int turn_controls = 4;  ///< turn vectors along the curve, four or more; 0: the wire does not turn
+  std::vector<WireBinding> bindings;  ///< ascending by part
 };
 
 /// How one wire leaves its reference curve. Everything that a wire does is linear in these numbers.

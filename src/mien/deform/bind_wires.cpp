@@ -42,9 +42,10 @@ void check_wire(const Wire& wire) {
       throw invalid_input(place, "has range " + std::to_string(range), "a finite length above 0");
   for (std::size_t i = 0; i < wire.falloff.size(); ++i) {
     const Eigen::Vector2d& point = wire.falloff[i];
-    if (!point.allFinite() || point.y() < 0 || point.y() > 1 || (i > 0 && point.x() <= wire.falloff[i - 1].x()))
-      throw invalid_input(place + ", falloff point " + std::to_string(i), "is out of order or outside of 0 to 1",
-                          "ascending x, and f from 0 to 1");
+    if (!point.allFinite() || point.y() < 0 || point.y() > 1 ||
+        (i > 0 && point.x() <= wire.falloff[i - 1].x()))
+      throw invalid_input(place + ", falloff point " + std::to_string(i),
+                          "is out of order or outside of 0 to 1", "ascending x, and f from 0 to 1");
   }
   if (!(wire.localizing >= 0) || !std::isfinite(wire.localizing))
     throw invalid_input(place, "has a localizing exponent that is negative or not finite", "0 or more");
@@ -145,7 +146,8 @@ std::vector<int> WireBinder::Surfaces::path_under(const Wire& wire, double max_d
     all = std::move(found);
   }
   if (!(std::sqrt(nearest) <= max_distance))
-    throw invalid_input("wire " + wire.name, "is further from the surface than it reaches", "a curve on the surface");
+    throw invalid_input("wire " + wire.name, "is further from the surface than it reaches",
+                        "a curve on the surface");
   std::vector<int> path;
   for (const int vertex : all) {
     const int welded = of(part).weld.of[vertex];

@@ -64,7 +64,8 @@ void check_move(const std::string& name, const WireMove& move, int controls, int
     if (rows.rows() != 0 && rows.rows() != wanted)
       throw invalid_input("wire " + name, "is moved by " + std::to_string(rows.rows()) + " " + what,
                           std::to_string(wanted));
-    if (!rows.allFinite()) throw invalid_input("wire " + name, std::string("has ") + what + " that are not finite");
+    if (!rows.allFinite())
+      throw invalid_input("wire " + name, std::string("has ") + what + " that are not finite");
   };
   check(move.controls, controls, "control points");
   check(move.turns, turns, "turns");
@@ -106,7 +107,8 @@ double range_at(const Wire& wire, double parameter) {
 
 PointsD bind_positions(const Character& character, int part) {
   const Eigen::Matrix4d matrix = bind_matrix(character, part);
-  PointsD positions = character.parts[part].mesh.positions.cast<double>() * matrix.topLeftCorner<3, 3>().transpose();
+  PointsD positions =
+      character.parts[part].mesh.positions.cast<double>() * matrix.topLeftCorner<3, 3>().transpose();
   positions.rowwise() += matrix.topRightCorner<3, 1>().transpose();
   return positions;
 }
@@ -167,7 +169,8 @@ void WireField::share_part(const Character& character, std::span<const Wire> wir
     for (std::size_t i = 0; i < here.size(); ++i) {
       const double share = here[i].falloff * powers[i] / sum;
       if (share < least_share) continue;
-      rows.entries.push_back(entry_of(wires[here[i].wire], here[i].parameter, share, positions.row(v).transpose()));
+      rows.entries.push_back(
+          entry_of(wires[here[i].wire], here[i].parameter, share, positions.row(v).transpose()));
       rows.entries.back().wire = static_cast<short>(here[i].wire);
     }
     if (static_cast<int>(rows.entries.size()) == rows.offsets.back()) continue;
@@ -192,8 +195,8 @@ void WireField::add(int part, std::span<const WireMove> moves, PointsD& position
                         "a part from 0 to " + std::to_string(static_cast<int>(parts_.size()) - 1));
   const PartRows& rows = parts_[part];
   if (!rows.vertices.empty() && rows.vertices.back() >= positions.rows())
-    throw invalid_input("part " + std::to_string(part), "has " + std::to_string(positions.rows()) + " positions",
-                        "one a vertex");
+    throw invalid_input("part " + std::to_string(part),
+                        "has " + std::to_string(positions.rows()) + " positions", "one a vertex");
   if (moves.empty() || sizes_.empty()) return;
   const Size& last = sizes_.back();
   Eigen::Matrix3Xf controls = Eigen::Matrix3Xf::Zero(3, last.control_begin + last.controls);

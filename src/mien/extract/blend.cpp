@@ -36,7 +36,8 @@ std::vector<double> numbers_of(std::string_view text) {
 }
 
 void check(const Character& character, const ShapeWeights& weights) {
-  if (character.wires.empty()) throw invalid_input("wires", "are none", "a character with wires (mien wires)");
+  if (character.wires.empty())
+    throw invalid_input("wires", "are none", "a character with wires (mien wires)");
   if (weights.values.size() != static_cast<Eigen::Index>(character.shapes.size()))
     throw invalid_input("shape weights", "number " + std::to_string(weights.values.size()),
                         std::to_string(character.shapes.size()) + ", one a shape");
@@ -82,8 +83,8 @@ void check_options(const Character& character, const BlendOptions& options) {
 }
 
 /// Adds the two expressions' shapes of one feature and the channels that lead from one to the other.
-void add_feature(Character& character, Clip& clip, const BlendFunction& function, const std::vector<float>& times,
-                 std::array<Shape, 2> ends) {
+void add_feature(Character& character, Clip& clip, const BlendFunction& function,
+                 const std::vector<float>& times, std::array<Shape, 2> ends) {
   for (std::size_t end = 0; end < 2; ++end) {
     if (ends[end].parts.empty()) continue;
     Channel channel;
@@ -188,7 +189,8 @@ Character blend(const Character& character, const ShapeWeights& from, const Shap
       if (f < features.size() && given.feature == features[f]) function = given.function;
     add_feature(result, clip, function, times, {std::move(first[f]), std::move(second[f])});
   }
-  if (clip.channels.empty()) throw invalid_input("expressions", "move nothing", "weights of shapes that move the face");
+  if (clip.channels.empty())
+    throw invalid_input("expressions", "move nothing", "weights of shapes that move the face");
   result.clips.push_back(std::move(clip));
   complete_sliders(result);
   return result;

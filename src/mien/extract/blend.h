@@ -14,8 +14,9 @@ namespace mien {
 
 /// g: [0, 1] -> share of the second expression.
 struct BlendFunction {
-  std::vector<Eigen::Vector2d> points;  ///< (t, g) by ascending t, linear between them and constant beyond; empty: `power`
-  double power = 1;                     ///< g(t) = t^power
+  std::vector<Eigen::Vector2d>
+      points;        ///< (t, g) by ascending t, linear between them and constant beyond; empty: `power`
+  double power = 1;  ///< g(t) = t^power
   double operator()(double t) const;
 };
 
@@ -39,9 +40,9 @@ std::vector<Shape> feature_shapes(const Character& character, const ShapeWeights
 struct BlendOptions {
   std::vector<FeatureFunction> functions;  ///< features that are not named, and the rest, follow `uniform`
   BlendFunction uniform;
-  int frames = 60;                         ///< two or more, both ends included
+  int frames = 60;  ///< two or more, both ends included
   double frames_per_second = 30;
-  std::string name = "blend";              ///< of the clip and its shapes
+  std::string name = "blend";  ///< of the clip and its shapes
 };
 
 /// The character with a clip from one expression to the other. Features that follow their own function become shapes of the

@@ -21,7 +21,8 @@ PointsD smooth_way(const PointsD& way, const std::vector<char>& picked) {
   for (int round = 0; round < smoothing_rounds; ++round) {
     const PointsD before = smooth;
     for (Eigen::Index i = 1; i + 1 < way.rows(); ++i)
-      if (!picked[i]) smooth.row(i) = 0.25 * before.row(i - 1) + 0.5 * before.row(i) + 0.25 * before.row(i + 1);
+      if (!picked[i])
+        smooth.row(i) = 0.25 * before.row(i - 1) + 0.5 * before.row(i) + 0.25 * before.row(i + 1);
   }
   return smooth;
 }

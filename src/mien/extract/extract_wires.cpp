@@ -63,11 +63,13 @@ struct WireSolver::State {
     for (std::size_t p = 0; p < character.parts.size(); ++p) {
       const Part& part = character.parts[p];
       vertex_counts.push_back(static_cast<Eigen::Index>(part.mesh.vertex_count()));
-      to_model.push_back(part.skin >= 0 || part.node < 0 ? Eigen::Matrix3d(Eigen::Matrix3d::Identity())
-                                                         : Eigen::Matrix3d(model[part.node].topLeftCorner<3, 3>()));
+      to_model.push_back(part.skin >= 0 || part.node < 0
+                             ? Eigen::Matrix3d(Eigen::Matrix3d::Identity())
+                             : Eigen::Matrix3d(model[part.node].topLeftCorner<3, 3>()));
       rows.emplace_back(part.mesh.vertex_count(), -1);
       const std::vector<int>& reached = field.parts()[p].vertices;
-      for (std::size_t row = 0; row < reached.size(); ++row) rows.back()[reached[row]] = static_cast<int>(row);
+      for (std::size_t row = 0; row < reached.size(); ++row)
+        rows.back()[reached[row]] = static_cast<int>(row);
     }
   }
 
@@ -93,7 +95,8 @@ std::vector<WireMove> WireSolver::solve(const Shape& shape) const {
   bool moved = false;
   for (const PartDelta& delta : shape.parts) {
     if (delta.part < 0 || delta.part >= static_cast<int>(state_->rows.size()))
-      throw invalid_input("shape " + shape.name, "moves part " + std::to_string(delta.part), "a part that exists");
+      throw invalid_input("shape " + shape.name, "moves part " + std::to_string(delta.part),
+                          "a part that exists");
     for (std::size_t i = 0; i < delta.vertices.size(); ++i) {
       const int row = state_->rows[delta.part][delta.vertices[i]];
       if (row < 0) continue;
@@ -242,10 +245,12 @@ void add_up(ExtractResult& result) {
 ExtractResult extract_wires(const Character& character, std::span<const Wire> wires,
                             const ExtractOptions& options) {
   if (!(options.residual >= 0) || !std::isfinite(options.residual))
-    throw invalid_input("residual", "is " + std::to_string(options.residual), "a part of the face's box, 0 or more");
+    throw invalid_input("residual", "is " + std::to_string(options.residual),
+                        "a part of the face's box, 0 or more");
   std::set<std::string> names;
   for (const Wire& wire : wires)
-    if (!names.insert(wire.name).second) throw invalid_input("wire " + wire.name, "is there twice", "names of their own");
+    if (!names.insert(wire.name).second)
+      throw invalid_input("wire " + wire.name, "is there twice", "names of their own");
   ExtractResult result;
   report_progress(options.progress, "set up", 0);
   auto start = Clock::now();
@@ -254,14 +259,14 @@ ExtractResult extract_wires(const Character& character, std::span<const Wire> wi
   const detail::Pieces pieces(character, wires);
   result.box = pieces.box();
   result.skin_vertices = pieces.skin_vertices();
+  result.skin = pieces.skin();
   std::vector<std::vector<FeatureError>> features(character.shapes.size(), pieces.features());
   result.features = pieces.features();
   result.shapes.resize(character.shapes.size());
   const Fitter fitter(character, solver, pieces, options.residual * result.box);
   start = Clock::now();
   parallel_for(character.shapes.size(), 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t s = begin; s < end; ++s)
-      result.shapes[s] = fitter.fit(character.shapes[s], features[s]);
+    for (std::size_t s = begin; s < end; ++s) result.shapes[s] = fitter.fit(character.shapes[s], features[s]);
   });
   result.solve_seconds = seconds_since(start);
   for (const auto& list : features)

@@ -48,7 +48,8 @@ class WireSolver {
 
 struct ExtractOptions {
   WireSolverOptions solver;
-  bool exact = false;  ///< keep the shapes as they are beside their wires; false: replace them by what is kept of them
+  bool exact =
+      false;  ///< keep the shapes as they are beside their wires; false: replace them by what is kept of them
   /// What the wires leave over is kept where it exceeds this part of the face's box, less this part of it, so that the surface
   /// stays smooth: the rest is then nowhere off by more.
   double residual = 0.002;
@@ -69,17 +70,19 @@ struct WireFit {
 };
 
 struct FeatureError {
-  std::string feature;       ///< vertices go by the wire that moves them most; empty: out of reach
+  std::string feature;                 ///< vertices go by the wire that moves them most; empty: out of reach
   double displacement = 0, error = 0;  ///< as in WireFit, over all shapes
 };
 
 struct ExtractResult {
-  Character character;              ///< with the wires, and their moves in each shape
-  std::vector<WireFit> shapes;      ///< by Character::shapes
+  Character character;          ///< with the wires, and their moves in each shape
+  std::vector<WireFit> shapes;  ///< by Character::shapes
   std::vector<FeatureError> features;
   double displacement = 0, error = 0, kept_error = 0, largest = 0;  ///< over all shapes
-  double box = 0;                   ///< diagonal of the box around what wires reach
-  std::size_t skin_vertices = 0;    ///< on the pieces that carry a wire
+  double box = 0;                       ///< diagonal of the box around what wires reach
+  std::size_t skin_vertices = 0;        ///< on the pieces that carry a wire
+  std::vector<std::vector<char>> skin;  ///< per part, #V: whether the vertex is on such a piece
+  bool is_skin(int part, int vertex) const { return skin[part][vertex]; }
   double setup_seconds = 0, solve_seconds = 0;
 };
 

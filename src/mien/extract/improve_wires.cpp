@@ -42,18 +42,19 @@ std::string twin_name(const std::string& name) {
 
 /// The sample of vertices on which candidates are tried, and the principal shapes there.
 struct Trial {
-  Trial(const Character& character, std::span<const Wire> wires, const WireSolverOptions& solver);
+  Trial(const Character& character, std::span<const Wire> wires, const ImproveOptions& options);
   /// What wires with these bindings leave of the displacements, of 1.
   double left_over(const Character& character, const std::vector<Wire>& wires, double ridge) const;
 
   std::vector<std::vector<WireDistances>> distances;  ///< per wire, on the sample
-  std::vector<std::vector<int>> row_of;               ///< per part and vertex: row of `shapes`, -1: not in the sample
-  std::vector<float> weights;                         ///< per row
-  std::vector<PointsD> shapes;                        ///< principal shapes, one row a sampled vertex
-  double total = 0;                                   ///< weighted sum of squares of all shapes
+  std::vector<std::vector<int>> row_of;  ///< per part and vertex: row of `shapes`, -1: not in the sample
+  std::vector<float> weights;            ///< per row
+  std::vector<PointsD> shapes;           ///< principal shapes, one row a sampled vertex
+  double total = 0;                      ///< weighted sum of squares of all shapes
 };
 
-Trial::Trial(const Character& character, std::span<const Wire> wires, const WireSolverOptions& solver) {
+Trial::Trial(const Character& character, std::span<const Wire> wires, const ImproveOptions& options) {
+  const WireSolverOptions& solver = options.solver;
   const WireBinder binder(character);
   for (const Wire& wire : wires)
     distances.push_back(
@@ -96,7 +97,7 @@ Trial::Trial(const Character& character, std::span<const Wire> wires, const Wire
               delta.deltas.row(static_cast<Eigen::Index>(i)).transpose().cast<double>();
   // Every expression counts alike, however small: by size lids would get the ranges that suit the jaw.
   for (Eigen::Index s = 0; s < all.cols(); ++s)
-    if (const double size = all.col(s).norm(); size > 0) all.col(s) /= size;
+    if (const double size = all.col(s).norm(); options.alike && size > 0) all.col(s) /= size;
   Eigen::MatrixXd weighted = all;
   for (Eigen::Index row = 0; row < rows; ++row) weighted.middleRows<3>(3 * row) *= weights[row];
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(all.transpose() * weighted);
@@ -137,16 +138,20 @@ double Trial::left_over(const Character& character, const std::vector<Wire>& wir
 class RangeSearch {
  public:
   RangeSearch(const Character& character, std::span<const Wire> wires, const ImproveOptions& options)
-      : character_(character), options_(options), trial_(character, wires, options.solver),
+      : character_(character),
+        options_(options),
+        trial_(character, wires, options),
         wires_(wires.begin(), wires.end()) {
     for (std::size_t w = 0; w < wires_.size(); ++w) {
-      longest_.push_back(longest_factor * *std::max_element(wires_[w].ranges.begin(), wires_[w].ranges.end()));
+      longest_.push_back(longest_factor *
+                         *std::max_element(wires_[w].ranges.begin(), wires_[w].ranges.end()));
       const std::string twin = twin_name(wires_[w].name);
       const auto first = std::find_if(wires_.begin(), wires_.begin() + static_cast<std::ptrdiff_t>(w),
                                       [&](const Wire& wire) { return wire.name == twin; });
       const auto leader = static_cast<std::size_t>(first - wires_.begin());
       if (leader < w) {
-        wires_[w].ranges = wires_[leader].ranges;
+        if (std::find(options_.fixed.begin(), options_.fixed.end(), wires_[w].name) == options_.fixed.end())
+          wires_[w].ranges = wires_[leader].ranges;
         groups_[group_of_[leader]].push_back(w);
       } else
         groups_.push_back({w});
@@ -162,6 +167,9 @@ class RangeSearch {
 
   /// Tries the factors on one group's ranges, or on the `value`-th of them.
   void try_factors(std::size_t group, int value, std::span<const double> factors) {
+    for (const std::size_t w : groups_[group])
+      if (std::find(options_.fixed.begin(), options_.fixed.end(), wires_[w].name) != options_.fixed.end())
+        return;
     std::vector<double> left(factors.size());
     std::vector<std::vector<Wire>> candidates(factors.size(), wires_);
     parallel_for(factors.size(), 1, [&](std::size_t begin, std::size_t end) {

@@ -2,6 +2,7 @@
 /// What a designer would otherwise try out: how far each wire reaches, which vertices count, where another wire would help.
 
 #include <span>
+#include <string>
 #include <vector>
 
 #include "mien/character/character.h"
@@ -18,14 +19,17 @@ std::vector<Eigen::VectorXf> outer_vertex_weights(const Character& character, st
 
 struct ImproveOptions {
   WireSolverOptions solver;
-  int sweeps = 3;       ///< over the range of each wire, by ever smaller factors
-  bool varying = true;  ///< then let ranges vary along the curve: four values a wire
+  int sweeps = 2;                  ///< over the range of each wire, by ever smaller factors
+  bool varying = false;            ///< then let ranges vary along the curve: four values a wire
+  bool alike = true;               ///< every expression counts alike; false: by the size of its displacements
+  std::vector<std::string> fixed;  ///< wires whose ranges stay
   Progress progress;
 };
 
 struct ImproveResult {
   std::vector<Wire> wires;
-  double before = 0, after = 0;  ///< what the wires leave of the displacements, of 1, on the sample that was used
+  double before = 0,
+         after = 0;  ///< what the wires leave of the displacements, of 1, on the sample that was used
 };
 
 /// The same wires with the ranges that rebuild the character's shapes best. Twins (`brow_L`, `brow_R`; `Left`, `Right`) keep

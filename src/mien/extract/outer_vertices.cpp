@@ -8,9 +8,10 @@ namespace mien {
 namespace {
 
 constexpr int rays = 32;
-constexpr double closed = 0.08;      ///< openness below which a vertex is hidden
+constexpr double closed = 0.08;  ///< openness below which a vertex is hidden
 constexpr float hidden_weight = 0.02f;
-constexpr float near_wire = 0.9f;    ///< falloff from which a vertex counts whatever it sees: closed lips, lid margins
+constexpr float near_wire =
+    0.9f;  ///< falloff from which a vertex counts whatever it sees: closed lips, lid margins
 
 }  // namespace
 

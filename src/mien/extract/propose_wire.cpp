@@ -26,8 +26,8 @@ Eigen::VectorXd energy_of(const Character& character, const ExtractResult& resul
     energy += left.cast<double>().rowwise().squaredNorm();
   }
   for (Eigen::Index v = 0; v < energy.size(); ++v) {
-    const bool reached = std::any_of(
-        result.character.wires.begin(), result.character.wires.end(), [&](const Wire& wire) {
+    const bool reached =
+        std::any_of(result.character.wires.begin(), result.character.wires.end(), [&](const Wire& wire) {
           return std::any_of(wire.bindings.begin(), wire.bindings.end(), [&](const WireBinding& binding) {
             return binding.part == part &&
                    std::binary_search(binding.vertices.begin(), binding.vertices.end(), static_cast<int>(v));
@@ -76,7 +76,8 @@ WireSketch propose_wire(const Character& character, const ExtractResult& result)
     Eigen::Index vertex = 0;
     double least = -1;
     for (Eigen::Index v = 0; v < positions.rows(); ++v)
-      if (const double d = (positions.row(v).transpose() - to).squaredNorm(); energy[v] > 0 && (least < 0 || d < least)) {
+      if (const double d = (positions.row(v).transpose() - to).squaredNorm();
+          energy[v] > 0 && (least < 0 || d < least)) {
         least = d;
         vertex = v;
       }

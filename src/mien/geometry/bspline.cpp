@@ -76,9 +76,7 @@ void require_points(const PointsD& points) {
 Eigen::Vector3d catmull_rom(const std::array<Eigen::Vector3d, 4>& p, const std::array<double, 4>& t,
                             double at) {
   const auto mix = [&](const Eigen::Vector3d& a, const Eigen::Vector3d& b, double ta,
-                       double tb) -> Eigen::Vector3d {
-    return ((tb - at) * a + (at - ta) * b) / (tb - ta);
-  };
+                       double tb) -> Eigen::Vector3d { return ((tb - at) * a + (at - ta) * b) / (tb - ta); };
   const Eigen::Vector3d a1 = mix(p[0], p[1], t[0], t[1]), a2 = mix(p[1], p[2], t[1], t[2]),
                         a3 = mix(p[2], p[3], t[2], t[3]);
   return mix(mix(a1, a2, t[0], t[2]), mix(a2, a3, t[1], t[3]), t[1], t[2]);
@@ -139,7 +137,8 @@ void require_valid(const BSpline& curve) {
       throw invalid_input("curve, knot " + std::to_string(k), "is not finite or below the one before it",
                           "knots that do not descend");
   if (!(curve.low() < curve.high()))
-    throw invalid_input("curve", "has knots without length between the fourth from each end", "a longer range");
+    throw invalid_input("curve", "has knots without length between the fourth from each end",
+                        "a longer range");
 }
 
 SplineBasis basis_at(std::span<const double> knots, double u) {

@@ -71,8 +71,7 @@ Geodesics::Arrival Geodesics::across(int triangle, int vertex, const GeodesicFie
   const double to_a = lengths_(triangle, j), to_b = lengths_(triangle, i), base = lengths_(triangle, k);
   Arrival best;
   if (fixed[a]) best = {field.distance[a] + to_a, field.place[a]};
-  if (fixed[b] && field.distance[b] + to_b < best.distance)
-    best = {field.distance[b] + to_b, field.place[b]};
+  if (fixed[b] && field.distance[b] + to_b < best.distance) best = {field.distance[b] + to_b, field.place[b]};
   if (fixed[a] && fixed[b] && base > 0) {
     const double x = (to_a * to_a - to_b * to_b + base * base) / (2 * base);
     const double y = std::sqrt(std::max(0.0, to_a * to_a - x * x));

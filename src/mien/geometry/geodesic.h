@@ -59,7 +59,8 @@ class Geodesics {
   PointsD positions_;
   Triangles triangles_;
   std::vector<int> corner_offsets_, corner_triangles_;  ///< triangles around each vertex
-  Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor> lengths_;  ///< of the edge opposite to each corner
+  Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>
+      lengths_;  ///< of the edge opposite to each corner
 };
 
 }  // namespace mien

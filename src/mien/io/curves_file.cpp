@@ -34,7 +34,9 @@ double box_diagonal(const Character& character) {
 class CurveReader {
  public:
   explicit CurveReader(const Character& character)
-      : character_(character), points_(character), model_(model_matrices(character)),
+      : character_(character),
+        points_(character),
+        model_(model_matrices(character)),
         box_(box_diagonal(character)) {}
 
   WireSketch read(const std::string& name, const JsonObject& source) {
@@ -52,7 +54,8 @@ class CurveReader {
                      "a cubic needs four or more, at most 1000");
     curve.turn_controls = static_cast<int>(source.integer_or("turns", curve.turn_controls, 0, 1000));
     if (curve.turn_controls > 0 && curve.turn_controls < 4)
-      throw io_error(source.place_of("turns"), fmt::format("is {}", curve.turn_controls), "give 0, or four or more");
+      throw io_error(source.place_of("turns"), fmt::format("is {}", curve.turn_controls),
+                     "give 0, or four or more");
     if (source.has("range")) {
       curve.range = source.number("range");
       if (!(curve.range > 0))
@@ -112,9 +115,12 @@ void write_curves(const std::vector<WireSketch>& curves, const Character& charac
                   const std::filesystem::path& path) {
   Json root = {{"curves", Json::object()}};
   for (const WireSketch& curve : curves) {
-    Json json = {{"points", Json::array()}, {"controls", curve.controls}, {"feature", curve.feature},
+    Json json = {{"points", Json::array()},
+                 {"controls", curve.controls},
+                 {"feature", curve.feature},
                  {"turns", curve.turn_controls}};
-    for (const SurfacePoint& point : curve.points) json["points"].push_back(detail::point_json(point, character));
+    for (const SurfacePoint& point : curve.points)
+      json["points"].push_back(detail::point_json(point, character));
     if (curve.range > 0) json["range"] = curve.range;
     if (!curve.geodesic) json["distance"] = "euclidean";
     root["curves"][curve.name] = std::move(json);

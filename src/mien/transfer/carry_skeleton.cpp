@@ -211,6 +211,10 @@ Clip carry_clip(const Character& source, const Clip& clip, const CarriedSkeleton
     return 0;
   }();
   for (const Channel& channel : clip.channels) {
+    if (channel.moves_wire()) {
+      dropped.push_back("clip " + clip.name + ": wire " + source.wires[at(channel.wire)].name);
+      continue;
+    }
     Channel carried = channel;
     carried.part = -1;
     if (channel.property == Channel::Property::shape_weight) {

@@ -73,8 +73,8 @@ FeatureShares::FeatureShares(const Character& character, const std::vector<std::
   const auto rest = static_cast<Eigen::Index>(features.size());
   for (std::size_t p = 0; p < character.parts.size(); ++p) {
     const Weld weld = weld_seams(character, static_cast<int>(p));
-    const std::vector<int> labels = connected_components(
-        weld.size(), triangulate(weld_faces(character.parts[p].mesh.faces, weld)));
+    const std::vector<int> labels =
+        connected_components(weld.size(), triangulate(weld_faces(character.parts[p].mesh.faces, weld)));
     const int pieces = labels.empty() ? 0 : *std::max_element(labels.begin(), labels.end()) + 1;
     std::vector<char> carries(static_cast<std::size_t>(pieces), 0);
     for (std::size_t v = 0; v < weld.of.size(); ++v)

@@ -15,6 +15,7 @@ class Pieces {
 
   /// Whether the vertex is on a connected piece of surface that a wire reaches.
   bool is_skin(int part, int vertex) const { return skin_[part][vertex]; }
+  const std::vector<std::vector<char>>& skin() const { return skin_; }
   bool has_skin(int part) const { return has_skin_[part]; }
   std::size_t skin_vertices() const { return skin_vertices_; }
   /// Index into `features` of the wire with the largest share; the last one: out of reach.

@@ -20,8 +20,8 @@ Eigen::Matrix3d cross(int axis) {
 }
 
 struct Moments {
-  Matrix controls;           ///< sum of B B
-  std::vector<double> cross;  ///< per (control point, coupled function): sum of B c r, 3 numbers
+  Matrix controls;              ///< sum of B B
+  std::vector<double> cross;    ///< per (control point, coupled function): sum of B c r, 3 numbers
   std::vector<double> coupled;  ///< per pair of coupled functions: sum of c1 c2 r1 r2', 9 numbers
 };
 
@@ -64,7 +64,8 @@ void add_pair(const Terms& first, const Terms& second, const WireColumns& column
 Moments gather(const WireField& field, const WireColumns& columns, const std::vector<int>& turns,
                const std::vector<std::vector<float>>& weights) {
   Moments moments;
-  const auto q = static_cast<std::size_t>(columns.control_count), b = static_cast<std::size_t>(columns.coupled_count);
+  const auto q = static_cast<std::size_t>(columns.control_count),
+             b = static_cast<std::size_t>(columns.coupled_count);
   moments.controls = Matrix::Zero(columns.control_count, columns.control_count);
   moments.cross.assign(3 * q * b, 0);
   moments.coupled.assign(9 * b * b, 0);
@@ -75,8 +76,9 @@ Moments gather(const WireField& field, const WireColumns& columns, const std::ve
       terms.clear();
       for (int e = rows.offsets[row]; e < rows.offsets[row + 1]; ++e) {
         const WireField::Entry& entry = rows.entries[e];
-        terms.push_back({columns.controls[entry.wire] + entry.first, columns.coupled[entry.wire], entry.turn_first,
-                         turns[entry.wire], &entry, weights[part][row], entry.offset.cast<double>()});
+        terms.push_back({columns.controls[entry.wire] + entry.first, columns.coupled[entry.wire],
+                         entry.turn_first, turns[entry.wire], &entry, weights[part][row],
+                         entry.offset.cast<double>()});
       }
       for (const Terms& first : terms)
         for (const Terms& second : terms) add_pair(first, second, columns, moments);
@@ -173,7 +175,8 @@ void WireSystem::add(int part, int row, const Eigen::Vector3d& wanted, WireVecto
     const Eigen::Vector3d offset = entry.offset.cast<double>(), moment = offset.cross(displacement);
     right.coupled[columns_.unknowns[sigma]] += offset.dot(displacement);
     for (int a = 0; a < turns_[entry.wire]; ++a)
-      right.coupled.segment<3>(columns_.unknowns[sigma + 1 + entry.turn_first + a]) += entry.turn_basis[a] * moment;
+      right.coupled.segment<3>(columns_.unknowns[sigma + 1 + entry.turn_first + a]) +=
+          entry.turn_basis[a] * moment;
   }
 }
 

@@ -54,7 +54,8 @@ Json moves_json(const Character& character, const Shape& shape, GltfBuilder& bui
   std::vector<float> values;
   const auto add = [&](const PointsD& rows, int count) {
     for (int r = 0; r < count; ++r)
-      for (int k = 0; k < 3; ++k) values.push_back(rows.rows() == count ? static_cast<float>(rows(r, k)) : 0.f);
+      for (int k = 0; k < 3; ++k)
+        values.push_back(rows.rows() == count ? static_cast<float>(rows(r, k)) : 0.f);
   };
   for (const WireMove& move : shape.wires) {
     const Wire& wire = character.wires[move.wire];
@@ -112,13 +113,15 @@ Wire read_wire(const JsonObject& source, GltfDocument& document, const std::vect
   wire.geodesic = source.truth_or("geodesic", true);
   wire.turn_controls = static_cast<int>(source.integer_or("turnControls", 0, 0, most_controls));
   if (wire.turn_controls > 0 && wire.turn_controls < 4)
-    throw io_error(source.place_of("turnControls"), fmt::format("is {}", wire.turn_controls), "give 0, 4 or more");
+    throw io_error(source.place_of("turnControls"), fmt::format("is {}", wire.turn_controls),
+                   "give 0, 4 or more");
   for (const JsonObject& point : source.objects("points"))
     wire.points.push_back(read_vendor_point(point, sources, character));
   if (source.has("falloff"))
     for (const Json& pair : source.json().at("falloff")) {
       if (!pair.is_array() || pair.size() != 2 || !pair[0].is_number() || !pair[1].is_number())
-        throw io_error(source.place_of("falloff"), "holds something else than pairs of numbers", "give [x, f]");
+        throw io_error(source.place_of("falloff"), "holds something else than pairs of numbers",
+                       "give [x, f]");
       wire.falloff.emplace_back(pair[0].get<double>(), pair[1].get<double>());
     }
   for (const JsonObject& binding : source.objects("bindings")) {
@@ -135,7 +138,8 @@ Wire read_wire(const JsonObject& source, GltfDocument& document, const std::vect
 void read_moves(const JsonObject& source, GltfDocument& document, Character& character) {
   const int shape = find_shape(character, source.text("shape"));
   if (shape < 0) return;  // another program took the shape away
-  const std::vector<float> values = document.floats(source.index("values", document.count("accessors")), 1).values;
+  const std::vector<float> values =
+      document.floats(source.index("values", document.count("accessors")), 1).values;
   std::size_t next = 0;
   const auto take = [&](int rows) {
     if (values.size() - next < static_cast<std::size_t>(3 * rows))
@@ -150,11 +154,13 @@ void read_moves(const JsonObject& source, GltfDocument& document, Character& cha
     WireMove move;
     move.wire = find_wire(character, name);
     if (move.wire < 0)
-      throw io_error(source.place_of("wires"), fmt::format("name {}", name.substr(0, 100)), "name wires of the file");
+      throw io_error(source.place_of("wires"), fmt::format("name {}", name.substr(0, 100)),
+                     "name wires of the file");
     const Wire& wire = character.wires[move.wire];
     move.controls = take(wire.curve.control_count());
     if (next >= values.size())
-      throw io_error(source.place_of("values"), "end within a wire", "give controls, scale and turns of each wire");
+      throw io_error(source.place_of("values"), "end within a wire",
+                     "give controls, scale and turns of each wire");
     move.scale = values[next++];
     move.turns = take(wire.turn_controls);
     character.shapes[shape].wires.push_back(std::move(move));

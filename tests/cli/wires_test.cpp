@@ -1,0 +1,71 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "cli/run_program.h"
+
+namespace mien::test {
+namespace {
+
+using ::testing::HasSubstr;
+
+TEST(WiresCommand, FindsWiresBlendsThemAndRefusesOddFiles) {
+  const Folder folder;
+  ASSERT_EQ(run({"sample", "human", "-o", folder.path().string(), "--quiet"}).exit_code, 0);
+  const std::string human = folder / "human.glb", out = folder / "wires.glb";
+  const Ran made = run({"wires", human, "--count", "15", "--keep-ranges", "-o", out, "--reconstruct",
+                        folder / "rebuilt", "--json"});
+  ASSERT_EQ(made.exit_code, 0) << made.err;
+  const auto json = nlohmann::json::parse(made.out);
+  EXPECT_EQ(json["wires"].size(), 15u);
+  EXPECT_LT(json["error"].get<double>(), 0.4 * json["displacement"].get<double>());
+  EXPECT_TRUE(std::filesystem::exists(folder / "rebuilt/jawOpen.obj"));
+
+  folder.write("from.json", R"({"weights": {"jawOpen": 0.6}})");
+  folder.write("to.json", R"({"weights": {"eyeBlinkLeft": 1}})");
+  const auto blend = [&](const std::string& character, const std::string& feature) {
+    return run({"blend", character, "--from", folder / "from.json", "--to", folder / "to.json", "--feature",
+                feature, "--frames", "8", "-o", folder / "blend.glb"});
+  };
+  EXPECT_EQ(blend(out, "ears=sqrt").err,
+            "mien: " + out + ": feature ears: has no wire; there are brows, eyes, nose, mouth, jaw\n");
+  EXPECT_THAT(blend(out, "eyes=fast").err,
+              HasSubstr("function fast: is not one; linear, sqrt, cube, or points"));
+  EXPECT_EQ(blend(human, "eyes=sqrt").err,
+            "mien: " + human + ": wires: are none; a character with wires (mien wires)\n");
+  EXPECT_FALSE(std::filesystem::exists(folder / "blend.glb"));
+  EXPECT_EQ(blend(out, "eyes=sqrt").exit_code, 0);
+  EXPECT_TRUE(std::filesystem::exists(folder / "blend.glb"));
+}
+
+TEST(WiresCommand, RefusesOddCurves) {
+  const Folder folder;
+  ASSERT_EQ(run({"sample", "human", "-o", folder.path().string(), "--quiet"}).exit_code, 0);
+  const auto with = [&](const std::string& curves) {
+    folder.write("curves.json", curves);
+    const Ran ran =
+        run({"wires", folder / "human.glb", "--curves", folder / "curves.json", "-o", folder / "out.glb"});
+    EXPECT_EQ(ran.exit_code, 1);
+    EXPECT_FALSE(std::filesystem::exists(folder / "out.glb"));
+    return ran.err;
+  };
+  EXPECT_THAT(with("{}"), HasSubstr("curves.json: file: has no \"curves\""));
+  EXPECT_THAT(with(R"({"curves": {"a": {"points": [{"vertex": 1}, {"vertex": 2}, {"vertex": 3}]}}})"),
+              HasSubstr("curve a, points: has 3 points; a cubic needs four or more"));
+  EXPECT_THAT(
+      with(
+          R"({"curves": {"a": {"points": [{"vertex": 1}, {"vertex": 2}, {"vertex": 3}, {"vertex": 4}], "controls": 3}}})"),
+      HasSubstr("a cubic needs four or more"));
+  EXPECT_THAT(
+      with(
+          R"({"curves": {"a": {"points": [{"vertex": 1}, {"vertex": 2}, {"vertex": 3}, {"position": [900, 0, 0]}]}}})"),
+      HasSubstr("off the surface"));
+  EXPECT_THAT(
+      with(
+          R"({"curves": {"a": {"points": [{"vertex": 1}, {"vertex": 2}, {"vertex": 3}, {"vertex": 4}], "range": 1e-12}}})"),
+      HasSubstr("wire a: reaches no vertex; a longer range"));
+}
+
+}  // namespace
+}  // namespace mien::test
