@@ -119,7 +119,8 @@ struct Channel {
   int shape = -1;   ///< for shape_weight (1 value): index into Character::shapes
   int part = -1;    ///< shape_weight on this part alone; -1: on every part that has the shape
   int slider = -1;  ///< for slider (1 value): index into Character::sliders
-  int wire = -1;    ///< for wire_scale (s - 1, 1 value), wire_control and wire_turn (3): index into Character::wires
+  int wire =
+      -1;  ///< for wire_scale (s - 1, 1 value), wire_control and wire_turn (3): index into Character::wires
   int control = -1;  ///< for wire_control and wire_turn: which of the wire's control points or turns
   Interpolation interpolation = Interpolation::linear;
   std::vector<float> times;  ///< seconds, strictly ascending

@@ -40,7 +40,7 @@ struct Pose {
   ShapeWeights shape_weights;     ///< #S
   std::vector<Transform> locals;  ///< #N, local transforms of Character::nodes
   std::vector<PartShapeWeight> part_shape_weights =
-      {};  ///< exceptions: a clip may animate one part's shape alone
+      {};                            ///< exceptions: a clip may animate one part's shape alone
   std::vector<WireMove> wires = {};  ///< what wires do besides the shapes; several moves of a wire add up
 };
 

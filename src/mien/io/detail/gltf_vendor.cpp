@@ -56,7 +56,7 @@ Json vendor_point(const SurfacePoint& point) {
 }
 
 SurfacePoint read_vendor_point(const JsonObject& source, const std::vector<PartSource>& sources,
-                        const Character& character) {
+                               const Character& character) {
   SurfacePoint point;
   const auto mesh = source.integer("mesh", 0, 1 << 30);
   const auto part =

@@ -283,8 +283,7 @@ Json ClipWriter::write(const Clip& whole) {
     animation["channels"] = std::move(channels_);
     members["still"] = true;
   }
-  if (!members.empty())
-    animation["extensions"][vendor_extension] = std::move(members);
+  if (!members.empty()) animation["extensions"][vendor_extension] = std::move(members);
   return animation;
 }
 
