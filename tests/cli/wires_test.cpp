@@ -8,14 +8,18 @@
 namespace mien::test {
 namespace {
 
+std::string quoted(const std::string& path) {
+  return " '" + path + "' ";
+}
+
 using ::testing::HasSubstr;
 
 TEST(WiresCommand, FindsWiresBlendsThemAndRefusesOddFiles) {
   const Folder folder;
-  ASSERT_EQ(run({"sample", "human", "-o", folder.path().string(), "--quiet"}).exit_code, 0);
+  ASSERT_EQ(run_mien(folder, "sample human --quiet -o" + quoted(folder.path().string())).exit_code, 0);
   const std::string human = folder / "human.glb", out = folder / "wires.glb";
-  const Ran made = run({"wires", human, "--count", "15", "--keep-ranges", "-o", out, "--reconstruct",
-                        folder / "rebuilt", "--json"});
+  const Ran made = run_mien(folder, "wires --count 15 --keep-ranges --json" + quoted(human) + "-o" +
+                                        quoted(out) + "--reconstruct" + quoted(folder / "rebuilt"));
   ASSERT_EQ(made.exit_code, 0) << made.err;
   const auto json = nlohmann::json::parse(made.out);
   EXPECT_EQ(json["wires"].size(), 15u);
@@ -25,8 +29,9 @@ TEST(WiresCommand, FindsWiresBlendsThemAndRefusesOddFiles) {
   folder.write("from.json", R"({"weights": {"jawOpen": 0.6}})");
   folder.write("to.json", R"({"weights": {"eyeBlinkLeft": 1}})");
   const auto blend = [&](const std::string& character, const std::string& feature) {
-    return run({"blend", character, "--from", folder / "from.json", "--to", folder / "to.json", "--feature",
-                feature, "--frames", "8", "-o", folder / "blend.glb"});
+    return run_mien(folder, "blend --frames 8" + quoted(character) + "--from" + quoted(folder / "from.json") +
+                                "--to" + quoted(folder / "to.json") + "--feature" + quoted(feature) + "-o" +
+                                quoted(folder / "blend.glb"));
   };
   EXPECT_EQ(blend(out, "ears=sqrt").err,
             "mien: " + out + ": feature ears: has no wire; there are brows, eyes, nose, mouth, jaw\n");
@@ -41,11 +46,11 @@ TEST(WiresCommand, FindsWiresBlendsThemAndRefusesOddFiles) {
 
 TEST(WiresCommand, RefusesOddCurves) {
   const Folder folder;
-  ASSERT_EQ(run({"sample", "human", "-o", folder.path().string(), "--quiet"}).exit_code, 0);
+  ASSERT_EQ(run_mien(folder, "sample human --quiet -o" + quoted(folder.path().string())).exit_code, 0);
   const auto with = [&](const std::string& curves) {
     folder.write("curves.json", curves);
-    const Ran ran =
-        run({"wires", folder / "human.glb", "--curves", folder / "curves.json", "-o", folder / "out.glb"});
+    const Ran ran = run_mien(folder, "wires" + quoted(folder / "human.glb") + "--curves" +
+                                         quoted(folder / "curves.json") + "-o" + quoted(folder / "out.glb"));
     EXPECT_EQ(ran.exit_code, 1);
     EXPECT_FALSE(std::filesystem::exists(folder / "out.glb"));
     return ran.err;
