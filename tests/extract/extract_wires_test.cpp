@@ -133,7 +133,9 @@ TEST(ImproveWires, LeavesLessThanBefore) {
   const ImproveResult improved = improve_wires(face, wires, options);
   EXPECT_LE(improved.after, improved.before);
   for (std::size_t w = 0; w < wires.size(); ++w)
-    if (wires[w].name == "chin") EXPECT_EQ(improved.wires[w].ranges, wires[w].ranges);
+    if (wires[w].name == "chin") {
+      EXPECT_EQ(improved.wires[w].ranges, wires[w].ranges);
+    }
   EXPECT_EQ(improved.wires[0].ranges, improved.wires[1].ranges);  // brow_R, brow_L
 }
 

@@ -49,8 +49,12 @@ TEST(Geodesics, FromAPointTheyAreCloseAndStopAtTheLimit) {
   const GeodesicField field = geodesics.distances(seeds, 0.8);
   for (Eigen::Index v = 1; v < grid.positions.rows(); ++v) {
     const double truth = grid.positions.row(v).norm();
-    if (truth < 0.75) EXPECT_NEAR(field.distance[v], truth, 0.06 * truth + 0.5 / n);
-    if (truth > 0.85) EXPECT_EQ(field.distance[v], std::numeric_limits<double>::infinity());
+    if (truth < 0.75) {
+      EXPECT_NEAR(field.distance[v], truth, 0.06 * truth + 0.5 / n);
+    }
+    if (truth > 0.85) {
+      EXPECT_EQ(field.distance[v], std::numeric_limits<double>::infinity());
+    }
   }
 }
 
