@@ -25,7 +25,7 @@ using detail::TemplateHead;
 /// and things that are no heads scores from .08 and likeness up to .53.
 constexpr double accept_score = 0.07, refuse_score = 0.09, least_likeness = 0.5;
 /// Trust in the placed landmarks while the template is registered.
-constexpr double virtual_trust = 0.2;
+constexpr double virtual_trust = 0.05;
 /// A given point further than this from where the others put it, in face sizes, is doubted.
 constexpr double least_surprise = 0.05;
 

@@ -98,9 +98,9 @@ TemplateHead make_template_head(const Character& like, const Eigen::Matrix3d& fa
   head.attention =
       (-head.skin.positions.rowwise().squaredNorm() / (face_radius * face_radius)).array().exp() +
       least_attention;
-  const Eigen::VectorXd open = openness(head.skin.positions, head.skin.triangles, openness_rays);
+  head.openness = openness(head.skin.positions, head.skin.triangles, openness_rays);
   head.relief = relief(head.skin, head.normals, relief_radius);
-  head.samples = spread_samples(head, open);
+  head.samples = spread_samples(head, head.openness);
   head.mirror = mirror_rows(head.points);
   return head;
 }

@@ -18,6 +18,7 @@ struct TemplateHead {
   Surface skin;
   PointsD normals;            ///< #V, unit
   Eigen::VectorXd attention;  ///< #V: 1 on the face, falling to a tenth on cranium and neck
+  Eigen::VectorXd openness;   ///< #V
   Eigen::VectorXd relief;     ///< #V, with `relief_radius`
   std::vector<int>
       samples;     ///< vertices of the open skin, far from each other, denser on the face; any prefix is even
