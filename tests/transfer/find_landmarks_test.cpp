@@ -52,7 +52,7 @@ double mean_error(const FoundLandmarks& found, const Character& truth, int from 
 /// A body of revolution about y with radius(v) at height(v), v from 0 (below) to 1.
 void revolve(Character& character, const std::function<double(double)>& radius,
              const std::function<double(double)>& height) {
-  constexpr int around = 48, up = 32;
+  constexpr int around = 32, up = 24;
   Part part;
   part.name = "body";
   part.mesh.positions.resize(around * (up + 1), 3);

@@ -26,8 +26,8 @@ struct Phase {
   double wide, narrow;  ///< the robust distance at the first and at the last step, face sizes
   bool strains;
 };
-constexpr Phase coarse{8, 250, 0.2, 0.07, false}, middle{12, 600, 0.09, 0.03, true},
-    fine{20, 1200, 0.05, 0.02, true};
+constexpr Phase glance{4, 120, 0.25, 0.12, false}, coarse{8, 250, 0.2, 0.07, false},
+    middle{12, 600, 0.09, 0.03, true}, fine{20, 1200, 0.05, 0.02, true};
 /// Below this a placement fits and other orientations need not be tried.
 constexpr double good_score = 0.07;
 constexpr double least_cosine = 0.2, open_skin = 0.4;
@@ -330,7 +330,10 @@ std::vector<Placement> placements(const std::vector<PlacedHead>& heads) {
   return all;
 }
 
-std::vector<PlacedHead> refine(Placer& placer, const std::vector<Placement>& starts) {
+/// Many starts are first glanced at, and the most hopeful ones improved.
+std::vector<PlacedHead> refine(Placer& placer, std::vector<Placement> starts) {
+  constexpr std::size_t hopeful = 60;
+  if (starts.size() > hopeful) starts = placements(distinct_best(run(placer, starts, glance), hopeful));
   const auto some = distinct_best(run(placer, starts, coarse), 16);
   auto better = run(placer, placements(some), middle);
   for (PlacedHead& one : better) placer.compare_relief(one);
