@@ -48,6 +48,14 @@ TEST(shape_weights, wrong_values_are_named) {
             "slider values: are 3; the character has 2 sliders");
   EXPECT_EQ(error_of([&] { weights_at(character, 0, std::numeric_limits<double>::quiet_NaN()); }),
             "slider open: is not finite; give a finite number");
+  Character broken = rig();
+  broken.sliders[1].stops[0].shape = 9;
+  EXPECT_THAT(error_of([&] { weights_at(broken, 0, 0); }),
+              HasSubstr("slider open: names shape 9; there are 5"));
+  broken = rig();
+  broken.correctives[0].inputs[0].slider = 2;
+  EXPECT_THAT(error_of([&] { weights_at(broken, 0, 0); }),
+              HasSubstr("corrective: names slider 2; there are 2"));
   EXPECT_THAT(error_of([&] {
                 apply_expression(character, {"o", {{7, 1}}}, SliderValues(2u));
               }),

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "cli/run_program.h"
+#include "mien/character/sliders.h"
 #include "mien/io/load.h"
 #include "mien/sample/sample.h"
 
@@ -17,6 +18,8 @@ namespace {
 std::string small_transfer(const Folder& folder) {
   Character human = make_sample("human");
   human.shapes.resize(1);
+  human.sliders.clear();
+  complete_sliders(human);
   human.clips.clear();
   save(human, folder / "human.glb", {});
   save(make_sample("cartoon"), folder / "cartoon.glb", {});

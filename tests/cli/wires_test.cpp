@@ -57,7 +57,7 @@ TEST(WiresCommand, RefusesOddCurves) {
   };
   EXPECT_THAT(with("{}"), HasSubstr("curves.json: file: has no \"curves\""));
   EXPECT_THAT(with(R"({"curves": {"a": {"points": [{"vertex": 1}, {"vertex": 2}, {"vertex": 3}]}}})"),
-              HasSubstr("curve a, points: has 3 points; a cubic needs four or more"));
+              HasSubstr("curve a.points: has 3 points; a cubic needs four or more"));
   EXPECT_THAT(
       with(
           R"({"curves": {"a": {"points": [{"vertex": 1}, {"vertex": 2}, {"vertex": 3}, {"vertex": 4}], "controls": 3}}})"),

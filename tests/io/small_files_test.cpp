@@ -55,8 +55,7 @@ TEST(read_landmarks, broken_files_name_the_place) {
        "marks.json: landmark nose.vertex: is 1.5; give a whole number"},
       {R"({"landmarks": {"nose": {"vertex": 0, "prat": "Skin"}}})",
        "marks.json: landmark nose: has an unknown member \"prat\"; it may have part, vertex, face, "
-       "barycentric, corners, "
-       "position"},
+       "barycentric, corners, position, control"},
       {R"({"landmarks": {"nose": {"part": "Skim", "vertex": 0}}})",
        "marks.json: landmark nose.part: is \"Skim\", which the character does not have; its first part is "
        "\"Skin\""},

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "mien/character/sliders.h"
 #include "mien/core/error.h"
 #include "mien/report/detail/html.h"
 #include "mien/report/thesis_times.h"
@@ -30,6 +31,8 @@ Character human_with(const std::set<std::string>& names) {
     kept.push_back(human.shapes[s]);
   }
   human.shapes = kept;
+  human.sliders.clear();
+  complete_sliders(human);
   for (Clip& clip : human.clips) {
     std::vector<Channel> channels;
     for (Channel channel : clip.channels) {

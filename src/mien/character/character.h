@@ -20,6 +20,7 @@
 #include "mien/character/surface_point.h"
 #include "mien/character/wire.h"
 #include "mien/geometry/mesh.h"
+#include "mien/geometry/nurbs_surface.h"
 
 namespace mien {
 
@@ -69,6 +70,9 @@ struct SkinWeights {
   bool operator==(const SkinWeights&) const = default;
 };
 
+/// How a part's mesh is smoothed by a program that subdivides: mien carries it.
+enum class Subdivision { none, catmull_clark, loop };
+
 /// A mesh in the scene: face, eye, teeth, tongue, lashes.
 struct Part {
   std::string name;
@@ -76,7 +80,11 @@ struct Part {
   int node = -1;  ///< the node that holds it, -1: model space
   int skin = -1;  ///< index into Character::skins, -1: not skinned
   SkinWeights skin_weights;
-  std::string mesh_name;  ///< the mesh's own name where a file tells it from the node's
+  /// The vertices are the control vertices of this surface, which shapes, skins and pins move like any other; the mesh's faces
+  /// are their grid.
+  std::optional<NurbsSurface> surface;
+  Subdivision subdivision = Subdivision::none;  ///< the mesh is the cage of such a surface
+  std::string mesh_name;                        ///< the mesh's own name where a file tells it from the node's
   std::string carried;
 };
 

@@ -10,6 +10,12 @@
 namespace mien {
 namespace {
 
+void check_shape(const Character& character, int shape, const std::string& place) {
+  if (shape < 0 || shape >= static_cast<int>(character.shapes.size()))
+    throw invalid_input(place, "names shape " + std::to_string(shape),
+                        "there are " + std::to_string(character.shapes.size()));
+}
+
 void check_values(const Character& character, const SliderValues& sliders) {
   if (sliders.values.size() != static_cast<Eigen::Index>(character.sliders.size()))
     throw invalid_input("slider values", "are " + std::to_string(sliders.values.size()),
@@ -18,6 +24,15 @@ void check_values(const Character& character, const SliderValues& sliders) {
     if (!std::isfinite(sliders.values[s]))
       throw invalid_input("slider " + character.sliders[static_cast<std::size_t>(s)].name, "is not finite",
                           "give a finite number");
+  for (const Slider& slider : character.sliders)
+    for (const SliderStop& stop : slider.stops) check_shape(character, stop.shape, "slider " + slider.name);
+  for (const Corrective& corrective : character.correctives) {
+    check_shape(character, corrective.shape, "corrective");
+    for (const CorrectiveInput& input : corrective.inputs)
+      if (input.slider < 0 || input.slider >= sliders.values.size())
+        throw invalid_input("corrective", "names slider " + std::to_string(input.slider),
+                            "there are " + std::to_string(sliders.values.size()));
+  }
 }
 
 /// The linear piece of a slider that holds a value. Shape -1: the neutral.

@@ -12,7 +12,8 @@ namespace mien {
 /// The shape weights at these slider values: what the stops give, plus the correctives; what drives one shape
 /// twice adds up, what drives none weighs 0.
 ///   returns  #S
-///   throws   invalid_input: a number of values other than the sliders', a value that is not finite
+///   throws   invalid_input: a number of values other than the sliders', a value that is not finite, a slider or corrective
+///            that names a shape or slider out of range
 ///   cost     linear in stops and corrective inputs
 ShapeWeights shape_weights(const Character& character, const SliderValues& sliders);
 

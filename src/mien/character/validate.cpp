@@ -222,6 +222,9 @@ void Validator::check_mesh(const Part& part, const std::string& place) {
   in_range(part.node, -1, character_.nodes.size(), place, "node");
   in_range(part.skin, -1, character_.skins.size(), place, "skin");
   check_skin_weights(part, place);
+  if (part.surface)
+    if (const std::string fault = fault_of(*part.surface, mesh.vertex_count()); !fault.empty())
+      add(place + ": spline surface", fault, "give a descriptor of its control vertices");
 }
 
 void Validator::check_delta(const PartDelta& delta, const std::string& place) {

@@ -45,6 +45,11 @@ std::string_view name_of(Convention convention);
 ///   throws  invalid_input: no such convention
 Convention convention_of_name(std::string_view name);
 
+enum class Side { none, left, right };
+
+/// The side that a name tells: mouthSmileLeft, eyeBlink_L, L_brow; none for a name without one.
+Side side_of_name(std::string_view name);
+
 /// The name of the other side: mouthSmileLeft for mouthSmileRight, eyeBlink_R for eyeBlink_L, L_brow for R_brow;
 /// empty for a name without a side.
 std::string mirrored_name(std::string_view name);

@@ -111,6 +111,12 @@ PlainName plain_name(std::string_view name) {
 
 }  // namespace detail
 
+Side side_of_name(std::string_view name) {
+  const std::optional<Word> side = find_side(name);
+  if (!side) return Side::none;
+  return side_of(lower(name.substr(side->begin, side->size)), true) == 'L' ? Side::left : Side::right;
+}
+
 std::string mirrored_name(std::string_view name) {
   const std::optional<Word> side = find_side(name);
   if (!side) return {};

@@ -32,6 +32,9 @@ Channel read_wire_channel(const JsonObject& source, const Character& character);
 /// N-gons, seams, groups, landmarks and curves from the vendor extension; sliders and wires too.
 void read_vendor(GltfDocument& document, const std::vector<PartSource>& sources, Character& character);
 
+/// The spline surface or subdivision that a part's vertices control, from its mesh's vendor extension.
+void read_surface(const JsonObject& vendor, Part& part);
+
 /// One mesh as the file holds it: its surface, its influences and its morph targets.
 struct MeshData {
   Mesh mesh;

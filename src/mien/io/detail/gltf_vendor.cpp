@@ -271,7 +271,6 @@ Json vendor_mesh(const Mesh& mesh, const SplitMesh& split, bool normals_computed
   }
   if (mesh.faces.empty()) vendor["points"] = true;
   if (normals_computed) vendor["normalsComputed"] = true;
-  if (!vendor.empty()) vendor["vertexCount"] = split.vertex_count;
   return vendor;
 }
 
@@ -303,7 +302,7 @@ void read_vendor(GltfDocument& document, const std::vector<PartSource>& sources,
       for (PartDelta& delta : character.shapes[shape].parts)
         if (delta.part == static_cast<int>(p)) deltas.push_back(&delta);
     const JsonObject vendor = mesh.object("extensions").object(vendor_extension);
-    Restorer(document, vendor, character.parts[p]).run(deltas);
+    if (Restorer(document, vendor, character.parts[p]).run(deltas)) read_surface(vendor, character.parts[p]);
   }
   if (!document.root().has("extensions") || !document.root().object("extensions").has(vendor_extension))
     return;

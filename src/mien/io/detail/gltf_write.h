@@ -25,6 +25,8 @@ SplitMesh split_seams(const Mesh& mesh);
 Json write_meshes(const Character& character, GltfBuilder& builder);
 /// The vendor extension of one mesh: what the glTF arrays do not say about its faces, seams and groups.
 Json vendor_mesh(const Mesh& mesh, const SplitMesh& split, bool normals_computed, GltfBuilder& builder);
+/// Adds the spline surface or subdivision that the part's vertices control.
+void write_surface(const Part& part, Json& vendor);
 /// The vendor extension of the file: landmarks, curves, sliders and wires.
 Json vendor_root(const Character& character, GltfBuilder& builder);
 Json vendor_point(const SurfacePoint& point);

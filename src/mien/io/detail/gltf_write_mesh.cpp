@@ -106,8 +106,10 @@ Json MeshWriter::write() {
     mesh["extras"]["targetNames"] = names;
     mesh["weights"] = weights;
   }
-  const Json vendor =
+  Json vendor =
       vendor_mesh(part_.mesh, split_, part_.mesh.normals.rows() != part_.mesh.positions.rows(), builder_);
+  write_surface(part_, vendor);
+  if (!vendor.empty()) vendor["vertexCount"] = split_.vertex_count;
   if (!vendor.empty()) mesh["extensions"][vendor_extension] = vendor;
   return mesh;
 }

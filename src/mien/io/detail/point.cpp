@@ -8,8 +8,26 @@
 
 namespace mien::detail {
 
+namespace {
+
+/// The vertex of a control vertex (i, j) of a spline surface.
+int read_control(const JsonObject& source, const Part& part) {
+  if (!part.surface)
+    throw io_error(source.place_of("control"), fmt::format("asks for a control vertex of part {}", part.name),
+                   "name a part that is a spline surface, or give a vertex");
+  const std::vector<double> at = source.numbers("control", 2);
+  const int count_u = part.surface->count_u, count_v = part.surface->count_v;
+  for (std::size_t k = 0; k < 2; ++k)
+    if (at[k] != std::floor(at[k]) || at[k] < 0 || at[k] >= (k == 0 ? count_u : count_v))
+      throw io_error(source.place_of("control"), fmt::format("is [{}, {}]", at[0], at[1]),
+                     fmt::format("give [i, j] below [{}, {}]", count_u, count_v));
+  return static_cast<int>(at[0]) + count_u * static_cast<int>(at[1]);
+}
+
+}  // namespace
+
 SurfacePoint PointReader::read(const JsonObject& source) {
-  source.expect_only({"part", "vertex", "face", "barycentric", "corners", "position"});
+  source.expect_only({"part", "vertex", "face", "barycentric", "corners", "position", "control"});
   int part = -1;
   if (source.has("part")) {
     const std::string name = source.text("part");
@@ -27,6 +45,10 @@ SurfacePoint PointReader::read(const JsonObject& source) {
   const Mesh& mesh = character_.parts[point.part].mesh;
   if (source.has("vertex")) {
     point.vertex = source.index("vertex", mesh.vertex_count());
+    return point;
+  }
+  if (source.has("control")) {
+    point.vertex = read_control(source, character_.parts[point.part]);
     return point;
   }
   if (!source.has("face"))
