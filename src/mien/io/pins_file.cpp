@@ -22,7 +22,7 @@ auto at_place(const std::string& place, const Function& function) {
   try {
     return function();
   } catch (const Error& error) {
-    throw error.in_file(place);
+    throw invalid_input(place, error.what());
   }
 }
 
