@@ -6,6 +6,7 @@
 #include "command.h"
 #include "mien/core/error.h"
 #include "mien/io/load.h"
+#include "mien/symmetry/find_mirror_plane.h"
 #include "mien/symmetry/mirror_shapes.h"
 
 namespace mien::cli {

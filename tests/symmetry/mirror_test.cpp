@@ -8,7 +8,7 @@
 #include "mien/character/whole_faces.h"
 #include "mien/core/error.h"
 #include "mien/sample/sample.h"
-#include "mien/symmetry/mirror_plane.h"
+#include "mien/symmetry/find_mirror_plane.h"
 #include "mien/symmetry/mirror_shapes.h"
 
 namespace mien {

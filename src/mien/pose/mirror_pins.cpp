@@ -17,15 +17,7 @@ MirrorPlane middle_plane(const Character& character) {
     all = first ? box : Box{all.low.cwiseMin(box.low), all.high.cwiseMax(box.high)};
     first = false;
   }
-  return {all.centre(), Eigen::Vector3d::UnitX()};
-}
-
-Eigen::Vector3d mirrored_direction(const MirrorPlane& plane, const Eigen::Vector3d& direction) {
-  return direction - 2 * direction.dot(plane.normal) / plane.normal.squaredNorm() * plane.normal;
-}
-
-Eigen::Vector3d mirrored_point(const MirrorPlane& plane, const Eigen::Vector3d& point) {
-  return plane.point + mirrored_direction(plane, point - plane.point);
+  return {Eigen::Vector3d::UnitX(), all.centre().x()};
 }
 
 std::vector<Pin> mirror_pins(const Character& character, const std::vector<Pin>& pins,
@@ -39,8 +31,7 @@ std::vector<Pin> mirror_pins(const Character& character, const std::vector<Pin>&
     if (!point) continue;
     detail::check_surface_point(character, *point, detail::pin_name(p));
     const Part& part = character.parts[point->part];
-    const Eigen::Vector3d at = position_of(part.mesh, rest[point->part], *point),
-                          image = mirrored_point(plane, at);
+    const Eigen::Vector3d at = position_of(part.mesh, rest[point->part], *point), image = plane.mirrored(at);
     if ((image - at).norm() < 1e-3 * bounding_box(rest[point->part]).diagonal()) continue;
     const Triangles triangles = triangulate(part.mesh.faces);
     const SurfaceQuery::Hit hit = SurfaceQuery(rest[point->part], triangles).closest(image);
@@ -49,11 +40,10 @@ std::vector<Pin> mirror_pins(const Character& character, const std::vector<Pin>&
     for (int t = hit.triangle; t > 0 && face_of_triangle(part.mesh.faces)[t - 1] == face; --t) ++corner;
     Pin twin = pins[p];
     twin.at = SurfacePoint{point->part, face, -1, hit.barycentric, {0, corner - 1, corner}};
-    twin.goal =
-        pins[p].goal_is_move ? mirrored_direction(plane, pins[p].goal) : mirrored_point(plane, pins[p].goal);
+    twin.goal = pins[p].goal_is_move ? plane.mirrored_vector(pins[p].goal) : plane.mirrored(pins[p].goal);
     for (int a = 0; a < 3; ++a)
       twin.axes.directions.row(a) =
-          mirrored_direction(plane, pins[p].axes.directions.row(a).transpose()).transpose();
+          plane.mirrored_vector(pins[p].axes.directions.row(a).transpose()).transpose();
     both.push_back(twin);
   }
   return both;

@@ -5,14 +5,12 @@
 
 #include "mien/character/character.h"
 #include "mien/character/pin.h"
+#include "mien/geometry/mirror_plane.h"
 
 namespace mien {
 
-struct MirrorPlane {
-  Eigen::Vector3d point = Eigen::Vector3d::Zero(), normal = Eigen::Vector3d::UnitX();  ///< model space
-};
-
-/// The plane across the middle of the face's box, upright: x is left and right.
+/// The plane across the middle of the face's box, upright, model space: x is left and right. For a head that is turned or
+/// far from symmetric, `find_mirror_plane` of symmetry looks for it.
 MirrorPlane middle_plane(const Character& character);
 
 /// `pins`, then for each its mirror image: the surface point of the neutral (parts as in rest) closest to its place's mirror
@@ -20,9 +18,5 @@ MirrorPlane middle_plane(const Character& character);
 ///   throws  invalid_input: a normal that is zero, a pin off the surface
 std::vector<Pin> mirror_pins(const Character& character, const std::vector<Pin>& pins,
                              const MirrorPlane& plane);
-
-/// A point, or a direction, on the other side.
-Eigen::Vector3d mirrored_point(const MirrorPlane& plane, const Eigen::Vector3d& point);
-Eigen::Vector3d mirrored_direction(const MirrorPlane& plane, const Eigen::Vector3d& direction);
 
 }  // namespace mien

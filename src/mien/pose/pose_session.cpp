@@ -97,7 +97,7 @@ PoseSession::Impl::Dragging PoseSession::Impl::begin(int number,
 
 const SolvePinsResult& PoseSession::Impl::move(Dragging& dragging, const Eigen::Vector3d& goal) const {
   dragging.solver.set_goal(dragging.active, goal);
-  if (dragging.twin) dragging.solver.set_goal(*dragging.twin, mirrored_point(dragging.plane, goal));
+  if (dragging.twin) dragging.solver.set_goal(*dragging.twin, dragging.plane.mirrored(goal));
   return dragging.solver.solve();
 }
 

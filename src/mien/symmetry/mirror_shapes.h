@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "mien/character/character.h"
+#include "mien/geometry/mirror_plane.h"
 #include "mien/naming/action.h"
-#include "mien/symmetry/mirror_plane.h"
 
 namespace mien {
 

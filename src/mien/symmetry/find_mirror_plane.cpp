@@ -1,4 +1,4 @@
-#include "mien/symmetry/mirror_plane.h"
+#include "mien/symmetry/find_mirror_plane.h"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>

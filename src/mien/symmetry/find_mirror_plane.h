@@ -1,23 +1,13 @@
 #pragma once
 /// The plane that a face mirrors itself in.
 
-#include <Eigen/Core>
-
 #include "mien/character/character.h"
+#include "mien/geometry/mirror_plane.h"
 
 namespace mien {
 
-/// Points x with normal . x = offset. The normal points to the character's own left.
-struct MirrorPlane {
-  Eigen::Vector3d normal = Eigen::Vector3d::UnitX();
-  double offset = 0;
-  double side(const Eigen::Vector3d& x) const { return normal.dot(x) - offset; }
-  Eigen::Vector3d mirrored(const Eigen::Vector3d& x) const { return x - 2 * side(x) * normal; }
-  Eigen::Vector3d mirrored_vector(const Eigen::Vector3d& d) const { return d - 2 * normal.dot(d) * normal; }
-};
-
 struct FoundPlane {
-  MirrorPlane plane;
+  MirrorPlane plane;  ///< model space; the normal is unit and points to the character's own left
   /// Mean distance of the mirrored surface to the surface, over the box's diagonal: 0 for a perfect mirror image; a sculpted
   /// head has 0.001 to 0.01.
   double asymmetry = 0;
