@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "mien/core/error.h"
-#include "mien/io/detail/json.h"
+#include "mien/io/detail/json_file.h"
 #include "mien/io/detail/point.h"
 #include "mien/io/file.h"
 
@@ -93,10 +93,7 @@ class CurveReader {
 }  // namespace
 
 std::vector<WireSketch> read_curves(const std::filesystem::path& path, const Character& character) {
-  try {
-    const std::vector<std::uint8_t> bytes = read_file(path);
-    const Json json = detail::parse_json({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, "JSON");
-    const JsonObject root(json, "");
+  return detail::read_json_file(path, [&](const detail::JsonObject& root) {
     if (!root.has("curves"))
       throw io_error("file", "has no \"curves\"", R"(give {"curves": {NAME: {"points": [POINT, ...]}}})");
     const JsonObject curves = root.object("curves");
@@ -106,9 +103,7 @@ std::vector<WireSketch> read_curves(const std::filesystem::path& path, const Cha
       result.push_back(reader.read(name, JsonObject(curve, fmt::format("curve {}", name))));
     if (result.empty()) throw io_error("curves", "are none", "give one or more");
     return result;
-  } catch (const Error& error) {
-    throw error.in_file(path.string());
-  }
+  });
 }
 
 void write_curves(const std::vector<WireSketch>& curves, const Character& character,

@@ -6,7 +6,7 @@
 #include <string_view>
 
 #include "mien/core/error.h"
-#include "mien/io/detail/json.h"
+#include "mien/io/detail/json_file.h"
 #include "mien/io/detail/point.h"
 #include "mien/io/file.h"
 
@@ -31,10 +31,7 @@ LandmarkCurve read_curve(const std::string& name, const JsonObject& source, deta
 }  // namespace
 
 LandmarkSet read_landmarks(const std::filesystem::path& path, const Character& character) {
-  try {
-    const std::vector<std::uint8_t> bytes = read_file(path);
-    const Json json = detail::parse_json({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, "JSON");
-    const JsonObject root(json, "");
+  return detail::read_json_file(path, [&](const detail::JsonObject& root) {
     if (!root.has("landmarks") && !root.has("curves"))
       throw io_error("file", "has no \"landmarks\"", R"(give {"landmarks": {NAME: POINT}})");
     detail::PointReader points(character);
@@ -50,9 +47,7 @@ LandmarkSet read_landmarks(const std::filesystem::path& path, const Character& c
         set.curves.push_back(read_curve(name, JsonObject(curve, fmt::format("curve {}", name)), points));
     }
     return set;
-  } catch (const Error& error) {
-    throw error.in_file(path.string());
-  }
+  });
 }
 
 void write_landmarks(const LandmarkSet& set, const Character& character, const std::filesystem::path& path) {

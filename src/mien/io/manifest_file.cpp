@@ -5,8 +5,7 @@
 #include <set>
 
 #include "mien/core/error.h"
-#include "mien/io/detail/json.h"
-#include "mien/io/file.h"
+#include "mien/io/detail/json_file.h"
 
 namespace mien {
 namespace {
@@ -31,11 +30,7 @@ TransferJob read_job(const detail::JsonObject& source, const std::filesystem::pa
 }  // namespace
 
 std::vector<TransferJob> read_manifest(const std::filesystem::path& path) {
-  try {
-    const std::vector<std::uint8_t> bytes = read_file(path);
-    const detail::Json json =
-        detail::parse_json({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, "JSON");
-    const detail::JsonObject root(json, "");
+  return detail::read_json_file(path, [&](const detail::JsonObject& root) {
     std::vector<TransferJob> jobs;
     std::set<std::filesystem::path> outputs;
     for (const detail::JsonObject& source : root.objects("jobs")) {
@@ -48,9 +43,7 @@ std::vector<TransferJob> read_manifest(const std::filesystem::path& path) {
       throw io_error("file", "has no \"jobs\"",
                      R"(give {"jobs": [{"source": F, "target": F, "output": F}]})");
     return jobs;
-  } catch (const Error& error) {
-    throw error.in_file(path.string());
-  }
+  });
 }
 
 }  // namespace mien

@@ -1,17 +1,12 @@
 #include "mien/io/name_map_file.h"
 
 #include "mien/core/error.h"
-#include "mien/io/detail/json.h"
-#include "mien/io/file.h"
+#include "mien/io/detail/json_file.h"
 
 namespace mien {
 
 std::vector<MappedName> read_name_map(const std::filesystem::path& path) {
-  try {
-    const std::vector<std::uint8_t> bytes = read_file(path);
-    const detail::Json json =
-        detail::parse_json({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, "JSON");
-    const detail::JsonObject root(json, "");
+  return detail::read_json_file(path, [&](const detail::JsonObject& root) {
     if (!root.has("map")) throw io_error("file", "has no \"map\"", R"(give {"map": {FROM: TO}})");
     const detail::JsonObject map = root.object("map");
     std::vector<MappedName> names;
@@ -24,9 +19,7 @@ std::vector<MappedName> read_name_map(const std::filesystem::path& path) {
       names.push_back({from, entry.text("to"), entry.number_or("gain", 1)});
     }
     return names;
-  } catch (const Error& error) {
-    throw error.in_file(path.string());
-  }
+  });
 }
 
 }  // namespace mien

@@ -5,9 +5,8 @@
 #include <algorithm>
 
 #include "mien/core/error.h"
-#include "mien/io/detail/json.h"
+#include "mien/io/detail/json_file.h"
 #include "mien/io/detail/point.h"
-#include "mien/io/file.h"
 #include "mien/io/weights_file.h"
 
 namespace mien {
@@ -177,21 +176,10 @@ std::vector<SurfacePoint> vertices_near(const Character& character, const std::v
   return near;
 }
 
-template <typename Function>
-auto read_json(const std::filesystem::path& path, const Function& read) {
-  try {
-    const std::vector<std::uint8_t> bytes = read_file(path);
-    const Json json = detail::parse_json({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, "JSON");
-    return read(JsonObject(json, ""));
-  } catch (const Error& error) {
-    throw error.in_file(path.string());
-  }
-}
-
 }  // namespace
 
 PinSet read_pins(const std::filesystem::path& path, const Character& character) {
-  return read_json(path, [&](const JsonObject& root) {
+  return detail::read_json_file(path, [&](const JsonObject& root) {
     root.expect_only({"pins", "locked", "limits", "exclusive", "stiffness", "joints"});
     if (!root.has("pins") || root.json()["pins"].empty())
       throw io_error("file", "has no \"pins\"", R"(give {"pins": [{"at": POINT, "goal": [x, y, z]}]})");
@@ -210,7 +198,7 @@ PinSet read_pins(const std::filesystem::path& path, const Character& character) 
 }
 
 std::vector<Tag> read_tags(const std::filesystem::path& path, const Character& character) {
-  return read_json(path, [&](const JsonObject& root) {
+  return detail::read_json_file(path, [&](const JsonObject& root) {
     root.expect_only({"tags"});
     if (!root.has("tags") || root.json()["tags"].empty())
       throw io_error("file", "has no \"tags\"", R"(give {"tags": [{"at": POINT, "axes": "xyz"}]})");
@@ -227,7 +215,7 @@ std::vector<Tag> read_tags(const std::filesystem::path& path, const Character& c
 }
 
 std::vector<RegionRule> read_region_rules(const std::filesystem::path& path, const Character& character) {
-  return read_json(path, [&](const JsonObject& root) {
+  return detail::read_json_file(path, [&](const JsonObject& root) {
     root.expect_only({"rules"});
     if (!root.has("rules") || root.json()["rules"].empty())
       throw io_error("file", "has no \"rules\"",

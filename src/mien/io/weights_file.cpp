@@ -10,7 +10,7 @@
 
 #include "mien/character/sliders.h"
 #include "mien/core/error.h"
-#include "mien/io/detail/json.h"
+#include "mien/io/detail/json_file.h"
 #include "mien/io/file.h"
 
 namespace mien {
@@ -65,10 +65,7 @@ int slider_index(const Character& character, std::string_view name) {
 }
 
 SliderValues read_weights(const std::filesystem::path& path, const Character& character) {
-  try {
-    const std::vector<std::uint8_t> bytes = read_file(path);
-    const Json json = detail::parse_json({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, "JSON");
-    const JsonObject root(json, "");
+  return detail::read_json_file(path, [&](const detail::JsonObject& root) {
     if (!root.has("weights"))
       throw io_error("file", "has no \"weights\"", R"(give {"weights": {NAME: NUMBER}})");
     const JsonObject named = root.object("weights");
@@ -76,9 +73,7 @@ SliderValues read_weights(const std::filesystem::path& path, const Character& ch
     for (const auto& [name, value] : named.json().items())
       sliders.values[slider_index(character, name)] = named.number(name.c_str());
     return sliders;
-  } catch (const Error& error) {
-    throw error.in_file(path.string());
-  }
+  });
 }
 
 void write_weights(const SliderValues& sliders, const Character& character,

@@ -7,6 +7,7 @@
 #include "mien/core/error.h"
 #include "mien/evaluate/point_evaluator.h"
 #include "mien/geometry/similarity.h"
+#include "mien/motion/detail/slider_channel.h"
 #include "mien/motion/retarget_sliders.h"
 #include "mien/pose/solve_pins.h"
 
@@ -14,7 +15,6 @@ namespace mien {
 namespace {
 
 constexpr int robust_rounds = 5;
-constexpr double quick_change = 0.1;   // of a slider, as in retarget
 constexpr double least_motion = 1e-4;  // of a slider: less is no channel
 
 std::string text_of(double number) {
@@ -232,16 +232,9 @@ void MarkerFitter::make_clip() {
   result_.clip.name = "capture";
   for (Eigen::Index s = 0; s < sliders_.cols(); ++s) {
     const Eigen::VectorXd values =
-        smooth_stream(sliders_.col(s), take_.seconds, options_.smooth, quick_change);
+        smooth_stream(sliders_.col(s), take_.seconds, options_.smooth, detail::quick_change);
     if (values.maxCoeff() - values.minCoeff() < least_motion) continue;
-    Channel channel;
-    channel.property = Channel::Property::slider;
-    channel.slider = static_cast<int>(s);
-    for (std::size_t f = 0; f < take_.seconds.size(); ++f) {
-      channel.times.push_back(static_cast<float>(take_.seconds[f]));
-      channel.values.push_back(static_cast<float>(values[static_cast<Eigen::Index>(f)]));
-    }
-    result_.clip.channels.push_back(std::move(channel));
+    result_.clip.channels.push_back(detail::slider_channel(static_cast<int>(s), take_.seconds, values));
   }
   result_.residual = motion_ > 0 ? std::sqrt(miss_ / motion_) : 0;
 }

@@ -1,7 +1,6 @@
 #include "mien/motion/retarget_joints.h"
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <limits>
 #include <set>
@@ -9,19 +8,10 @@
 #include "mien/character/pose.h"
 #include "mien/core/error.h"
 #include "mien/evaluate/evaluate.h"
+#include "mien/naming/action.h"
 
 namespace mien {
 namespace {
-
-std::string plain(std::string_view name) {
-  const std::size_t space = name.find_last_of(":|");
-  if (space != name.npos) name.remove_prefix(space + 1);
-  std::string result;
-  for (const char c : name)
-    if (std::isalnum(static_cast<unsigned char>(c)) != 0)
-      result += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return result;
-}
 
 int node_named(const Character& character, const std::string& name, const char* whose) {
   const int node = find_node(character, name);
@@ -40,7 +30,7 @@ std::vector<int> drivers(const Character& source, const Character& target,
   if (!names.empty()) return driver;
   for (std::size_t t = 0; t < target.nodes.size(); ++t)
     for (std::size_t s = 0; s < source.nodes.size() && driver[t] < 0; ++s)
-      if (!target.nodes[t].name.empty() && plain(source.nodes[s].name) == plain(target.nodes[t].name))
+      if (!target.nodes[t].name.empty() && bare_name(source.nodes[s].name) == bare_name(target.nodes[t].name))
         driver[t] = static_cast<int>(s);
   return driver;
 }

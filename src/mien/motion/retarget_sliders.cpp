@@ -2,19 +2,17 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
 #include <set>
 #include <string_view>
 
 #include "mien/character/sliders.h"
 #include "mien/core/error.h"
+#include "mien/motion/detail/slider_channel.h"
 #include "mien/naming/action.h"
 
 namespace mien {
 namespace {
-
-constexpr double quick_change = 0.1;  // of a slider: what the smoothing takes for motion, not noise
 
 Eigen::Index stream_named(const SliderTake& take, const std::string& name) {
   const auto found = std::find(take.names.begin(), take.names.end(), name);
@@ -59,17 +57,6 @@ void check(const SliderTake& take, const RetargetOptions& options) {
     if (!std::isfinite(gain)) throw invalid_input("gain of " + slider, "is not finite");
 }
 
-Channel slider_channel(int slider, const std::vector<double>& seconds, const Eigen::VectorXd& values) {
-  Channel channel;
-  channel.property = Channel::Property::slider;
-  channel.slider = slider;
-  for (std::size_t f = 0; f < seconds.size(); ++f) {
-    channel.times.push_back(static_cast<float>(seconds[f]));
-    channel.values.push_back(static_cast<float>(values[static_cast<Eigen::Index>(f)]));
-  }
-  return channel;
-}
-
 /// What Live Link calls the three angles of a joint, and what characters call the joint.
 struct TurnedJoint {
   std::string_view streams;                ///< "Head": HeadYaw, HeadPitch, HeadRoll
@@ -82,19 +69,11 @@ constexpr std::array<TurnedJoint, 3> turned_joints{{
     {"RightEye", {"eyer", "eyeright", "righteye", "eyerightjoint", "defeyer"}, "eyeLookUpRight"},
 }};
 
-std::string plain(std::string_view name) {
-  std::string result;
-  for (const char c : name)
-    if (std::isalnum(static_cast<unsigned char>(c)) != 0)
-      result += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return result;
-}
-
 int joint_of(const Character& character, const TurnedJoint& turned) {
   for (const std::string_view name : turned.joints)
     for (const Skin& skin : character.skins)
       for (const int joint : skin.joints)
-        if (plain(character.nodes[static_cast<std::size_t>(joint)].name) == name) return joint;
+        if (bare_name(character.nodes[static_cast<std::size_t>(joint)].name) == name) return joint;
   return -1;
 }
 
@@ -157,7 +136,7 @@ Eigen::VectorXd Retargeter::stream(Eigen::Index column, bool calibrate) const {
     const double neutral = values[static_cast<Eigen::Index>(frame_at(take_, *options_.neutral_at))];
     values = calibrate ? calibrated(values, neutral) : Eigen::VectorXd(values.array() - neutral);
   }
-  return smooth_stream(values, take_.seconds, options_.smooth, quick_change);
+  return smooth_stream(values, take_.seconds, options_.smooth, detail::quick_change);
 }
 
 void Retargeter::drive_sliders() {
@@ -178,7 +157,7 @@ void Retargeter::drive_sliders() {
     if (const auto gain = options_.gains.find(slider.name); gain != options_.gains.end())
       values *= gain->second;
     if (!options_.overdrive) values = values.cwiseMax(slider.minimum).cwiseMin(slider.maximum);
-    result_.clip.channels.push_back(slider_channel(s, take_.seconds, values));
+    result_.clip.channels.push_back(detail::slider_channel(s, take_.seconds, values));
   }
 }
 

@@ -45,6 +45,10 @@ std::string_view name_of(Convention convention);
 ///   throws  invalid_input: no such convention
 Convention convention_of_name(std::string_view name);
 
+/// A joint's name to compare with others: lower case, letters and digits alone, without what stands in front of the last
+/// ":" or "|".
+std::string bare_name(std::string_view name);
+
 enum class Side { none, left, right };
 
 /// The side that a name tells: mouthSmileLeft, eyeBlink_L, L_brow; none for a name without one.

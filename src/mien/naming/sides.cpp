@@ -111,6 +111,14 @@ PlainName plain_name(std::string_view name) {
 
 }  // namespace detail
 
+std::string bare_name(std::string_view name) {
+  const std::size_t space = name.find_last_of(":|");
+  if (space != name.npos) name.remove_prefix(space + 1);
+  std::string bare = lower(name);
+  std::erase_if(bare, [](char c) { return !is_letter_or_digit(c); });
+  return bare;
+}
+
 Side side_of_name(std::string_view name) {
   const std::optional<Word> side = find_side(name);
   if (!side) return Side::none;
