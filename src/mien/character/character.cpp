@@ -42,6 +42,9 @@ int find_wire(const Character& character, std::string_view name) {
 int find_node(const Character& character, std::string_view name) {
   return find_by_name(character.nodes, name);
 }
+int find_object(const Character& character, std::string_view name) {
+  return find_by_name(character.objects, name);
+}
 
 std::vector<Eigen::Matrix4d> model_matrices(const Character& character) {
   std::vector<Eigen::Matrix4d> locals;

@@ -16,6 +16,9 @@
 #include <string_view>
 #include <vector>
 
+#include "mien/character/constraint.h"
+#include "mien/character/control.h"
+#include "mien/character/influence_object.h"
 #include "mien/character/slider.h"
 #include "mien/character/surface_point.h"
 #include "mien/character/wire.h"
@@ -61,15 +64,6 @@ struct Skin {
   SkinningMethod method = SkinningMethod::linear_blend;
 };
 
-/// Any number of (joint, skin weight) pairs a vertex; the skin weights of a vertex sum to one.
-struct SkinWeights {
-  std::vector<int> offsets;    ///< #V + 1: vertex v has the influences [offsets[v], offsets[v + 1])
-  std::vector<int> joints;     ///< index into Skin::joints
-  std::vector<float> weights;  ///< > 0
-  bool empty() const { return offsets.empty(); }
-  bool operator==(const SkinWeights&) const = default;
-};
-
 /// How a part's mesh is smoothed by a program that subdivides: mien carries it.
 enum class Subdivision { none, catmull_clark, loop };
 
@@ -84,7 +78,8 @@ struct Part {
   /// are their grid.
   std::optional<NurbsSurface> surface;
   Subdivision subdivision = Subdivision::none;  ///< the mesh is the cage of such a surface
-  std::string mesh_name;                        ///< the mesh's own name where a file tells it from the node's
+  bool shown = true;      ///< false: no node of the file shows the mesh; it is only carried
+  std::string mesh_name;  ///< the mesh's own name where a file tells it from the node's
   std::string carried;
 };
 
@@ -105,6 +100,8 @@ struct Shape {
   /// What the wires have to do with it, ascending by wire; none: nothing is known. `parts` remain what the shape is: these
   /// moves and what the wires leave over. Moving the wires of a shape moves its parts (`edit_wires`).
   std::vector<WireMove> wires = {};
+  /// How it moves the control points of influence objects, ascending by object; they move the skin besides `parts`.
+  std::vector<ObjectMove> objects = {};
 };
 
 enum class Interpolation { step, linear, cubic_spline };
@@ -120,7 +117,8 @@ struct Channel {
     slider,
     wire_control,
     wire_scale,
-    wire_turn
+    wire_turn,
+    object_control
   };
   Property property = Property::translation;
   int node = -1;    ///< for translation (3 values), rotation (unit quaternion x, y, z, w) and scale (3)
@@ -129,7 +127,8 @@ struct Channel {
   int slider = -1;  ///< for slider (1 value): index into Character::sliders
   int wire =
       -1;  ///< for wire_scale (s - 1, 1 value), wire_control and wire_turn (3): index into Character::wires
-  int control = -1;  ///< for wire_control and wire_turn: which of the wire's control points or turns
+  int control = -1;  ///< for wire_control, wire_turn and object_control: which of the control points or turns
+  int object = -1;   ///< for object_control (3 values): index into Character::objects
   Interpolation interpolation = Interpolation::linear;
   std::vector<float> times;  ///< seconds, strictly ascending
   std::vector<float> values;
@@ -195,7 +194,10 @@ struct Character {
   std::vector<Clip> clips;
   std::vector<Landmark> landmarks;
   std::vector<LandmarkCurve> curves;
-  std::vector<Wire> wires;  ///< names are unique
+  std::vector<Wire> wires;               ///< names are unique
+  std::vector<InfluenceObject> objects;  ///< names are unique
+  std::vector<Constraint> constraints;   ///< in the order in which they apply; names are unique
+  std::vector<Control> controls;         ///< the control interface
   Appearance appearance;
   std::string carried;  ///< JSON object text of the file's members that mien only carries
 };
@@ -205,6 +207,7 @@ int find_part(const Character& character, std::string_view name);
 int find_shape(const Character& character, std::string_view name);
 int find_wire(const Character& character, std::string_view name);
 int find_node(const Character& character, std::string_view name);
+int find_object(const Character& character, std::string_view name);
 
 /// #N matrices, node space to model space, for nodes in rest. Cost: linear.
 ///   throws  invalid_input: a cycle among the parents, a parent out of range

@@ -25,8 +25,10 @@ struct SliderValues {
 
 /// What an animator sets.
 struct RigPose {
-  SliderValues sliders;           ///< #sliders
-  std::vector<Transform> locals;  ///< #N, local transforms of Character::nodes
+  SliderValues sliders;                  ///< #sliders
+  std::vector<Transform> locals;         ///< #N, local transforms of Character::nodes
+  std::vector<WireMove> wires = {};      ///< what wires do besides the shapes; several moves of a wire add up
+  std::vector<ObjectMove> objects = {};  ///< what influence objects do besides the shapes
 };
 
 /// A shape weight on one part alone, in place of the pose's own.
@@ -40,8 +42,9 @@ struct Pose {
   ShapeWeights shape_weights;     ///< #S
   std::vector<Transform> locals;  ///< #N, local transforms of Character::nodes
   std::vector<PartShapeWeight> part_shape_weights =
-      {};                            ///< exceptions: a clip may animate one part's shape alone
-  std::vector<WireMove> wires = {};  ///< what wires do besides the shapes; several moves of a wire add up
+      {};                                ///< exceptions: a clip may animate one part's shape alone
+  std::vector<WireMove> wires = {};      ///< what wires do besides the shapes; several moves of a wire add up
+  std::vector<ObjectMove> objects = {};  ///< what influence objects do besides the shapes; they add up too
 };
 
 /// The pose when nothing is animated: sliders and nodes at rest.

@@ -71,6 +71,24 @@ struct FaceGroup {
   bool operator==(const FaceGroup&) const = default;
 };
 
+/// A per-vertex attribute that mien only carries: glTF's `_NAME`.
+struct VertexAttribute {
+  std::string name;           ///< with its underscore
+  int width = 1;              ///< numbers a vertex: 1 to 4 (SCALAR, VEC2 ...), 9 or 16 are not glTF's
+  int component_type = 5126;  ///< glTF's number of the stored type
+  bool normalized = false;    ///< whole numbers that stand for [0, 1] or [-1, 1]
+  std::vector<float> values;  ///< #V x width, as stored (whole numbers unscaled)
+  bool operator==(const VertexAttribute&) const = default;
+};
+
+/// Points or line segments beside the faces, which mien only carries.
+struct LooseElements {
+  bool lines = false;  ///< pairs of vertices; false: points
+  int material = -1;   ///< index into Appearance::materials; -1: none
+  std::vector<int> vertices;
+  bool operator==(const LooseElements&) const = default;
+};
+
 struct Mesh {
   Points positions;  ///< #V
   Faces faces;
@@ -79,6 +97,8 @@ struct Mesh {
   std::vector<UvSet> uvs;         ///< UV sets, in order
   std::vector<Points4> colors;    ///< per vertex RGBA in [0, 1], or none
   std::vector<FaceGroup> groups;  ///< in face order, covering all faces; empty: one nameless group
+  std::vector<VertexAttribute> attributes;
+  std::vector<LooseElements> loose;
 
   std::size_t vertex_count() const { return static_cast<std::size_t>(positions.rows()); }
 };
