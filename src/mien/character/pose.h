@@ -54,7 +54,7 @@ Pose rest_pose(const Character& character);
 /// `local` is its rest, otherwise the transform's.
 Eigen::Matrix4d local_matrix(const Node& node, const Transform& local);
 
-/// #N matrices, node space to model space, in `pose`. A node whose local transform is its rest keeps the
+/// #N matrices, node space to model space, in `pose`; its constraints are obeyed before. A node at rest keeps the
 /// matrix that its file gave (it may shear).
 ///   throws  invalid_input: a number of locals other than #N; cyclic parents
 std::vector<Eigen::Matrix4d> model_matrices(const Character& character, const Pose& pose);

@@ -444,6 +444,8 @@ std::vector<Problem> Validator::run() {
   check_expressions();
   check_clips();
   check_landmarks();
+  for (const auto& found : {constraint_problems(character_), control_problems(character_)})
+    problems_.insert(problems_.end(), found.begin(), found.end());
   return std::move(problems_);
 }
 

@@ -24,6 +24,16 @@ struct Problem {
 ///   cost  linear
 std::vector<Problem> validate(const Character& character);
 
+/// The part of it about constraints: nodes out of range, sources where there are none or none where there must be, shares and
+/// influences out of range, ranges upside down, axes that are not unit or lie along each other, and nodes that follow
+/// themselves through their sources and parents, with the names of the circle.
+///   cost  constraints x nodes
+std::vector<Problem> constraint_problems(const Character& character);
+
+/// The part of it about controls: sliders and nodes out of range or of the wrong number for the control's kind, mirrors that do
+/// not name each other, places that are not finite.
+std::vector<Problem> control_problems(const Character& character);
+
 ///   throws  invalid_input: the first problem
 void require_valid(const Character& character);
 

@@ -9,6 +9,7 @@
 #include "mien/deform/shapes.h"
 #include "mien/deform/skin.h"
 #include "mien/deform/wires.h"
+#include "mien/evaluate/constraints.h"
 #include "mien/evaluate/detail/check_pose.h"
 
 namespace mien {
@@ -37,7 +38,7 @@ PointsD to_model_space(const Character& character, const Part& part, const Point
 
 std::vector<Points> evaluate(const Character& character, const Pose& pose) {
   detail::check_pose(character, pose);
-  const std::vector<Eigen::Matrix4d> model = model_matrices(character, pose);
+  const std::vector<Eigen::Matrix4d> model = posed_matrices(character, pose);
   std::optional<WireField> wires;
   if (!pose.wires.empty()) wires.emplace(character, character.wires);
   ShapeWeights weights(character.shapes.size());

@@ -9,6 +9,7 @@
 #include "mien/character/weld.h"
 #include "mien/core/error.h"
 #include "mien/deform/skin.h"
+#include "mien/evaluate/constraints.h"
 #include "mien/evaluate/detail/check_pose.h"
 #include "mien/evaluate/evaluate.h"
 
@@ -23,7 +24,7 @@ using Linear = std::vector<Eigen::Matrix3d>;
 /// What the skin or the node does to directions at each vertex.
 Linear linear_maps(const Character& character, const Pose& pose, const Part& part) {
   const auto count = static_cast<Eigen::Index>(part.mesh.vertex_count());
-  const auto model = model_matrices(character, pose);
+  const auto model = posed_matrices(character, pose);
   Linear maps(part.mesh.vertex_count(), Eigen::Matrix3d::Identity());
   if (part.skin < 0) {
     if (part.node >= 0) maps.assign(maps.size(), model[part.node].topLeftCorner<3, 3>());

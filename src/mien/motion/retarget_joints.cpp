@@ -7,6 +7,7 @@
 
 #include "mien/character/pose.h"
 #include "mien/core/error.h"
+#include "mien/evaluate/constraints.h"
 #include "mien/evaluate/evaluate.h"
 #include "mien/naming/action.h"
 
@@ -128,7 +129,7 @@ void JointRetargeter::find_root() {
 }
 
 void JointRetargeter::add_frame(float time) {
-  const std::vector<Eigen::Matrix4d> moved = model_matrices(source_, sample_clip(source_, clip_, time));
+  const std::vector<Eigen::Matrix4d> moved = posed_matrices(source_, sample_clip(source_, clip_, time));
   std::vector<Eigen::Quaterniond> model(target_.nodes.size());
   for (const int t : order_) {
     const auto index = static_cast<std::size_t>(t);

@@ -10,6 +10,7 @@
 
 #include "mien/character/sliders.h"
 #include "mien/core/error.h"
+#include "mien/evaluate/constraints.h"
 #include "mien/evaluate/point_evaluator.h"
 #include "mien/pose/detail/dense_box_qp.h"
 #include "mien/pose/detail/dense_kernels.h"
@@ -74,7 +75,7 @@ struct Attenuator::Impl {
         character(given) {
     check_alpha(options.alpha);
     slopes = shape_weight_slopes(character, tagging.sliders).sparseView();
-    model = model_matrices(character, pose);
+    model = posed_matrices(character, pose);
     for (int p = 0; p < static_cast<int>(character.parts.size()); ++p)
       moves_of_part.push_back(character.parts[p].skin < 0 ? moves_by_vertex(character, p) : VertexMoves{});
     gram = slopes.transpose() * detail::shape_products(character, pose) * slopes;

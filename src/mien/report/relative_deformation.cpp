@@ -7,6 +7,7 @@
 #include "mien/character/sliders.h"
 #include "mien/core/error.h"
 #include "mien/core/parallel.h"
+#include "mien/evaluate/constraints.h"
 #include "mien/evaluate/evaluate.h"
 
 namespace mien {
@@ -122,7 +123,7 @@ PointTracks track_nodes(const Character& character, const Clip& clip, const std:
       throw invalid_input("node " + std::to_string(node), "does not exist",
                           "one of " + std::to_string(character.nodes.size()));
   const auto places = [&](const Pose& pose) {
-    const std::vector<Eigen::Matrix4d> model = model_matrices(character, pose);
+    const std::vector<Eigen::Matrix4d> model = posed_matrices(character, pose);
     PointsD points(static_cast<Eigen::Index>(nodes.size()), 3);
     for (std::size_t n = 0; n < nodes.size(); ++n)
       points.row(static_cast<Eigen::Index>(n)) =

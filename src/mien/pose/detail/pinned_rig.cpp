@@ -6,6 +6,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "mien/evaluate/constraints.h"
+
 namespace mien::detail {
 namespace {
 
@@ -42,6 +44,7 @@ PinnedRig::PinnedRig(const Character& character, const std::vector<Pin>& pins, c
                      const std::vector<Joint>& joints, double length)
     : map_(character), joints_(joints), length_(length), sliders_(map_.slider_count()) {
   skeleton_.nodes = character.nodes;
+  skeleton_.constraints = character.constraints;
   std::vector<SurfacePoint> points;
   for (std::size_t p = 0; p < pins.size(); ++p) add_pin(pins[p], static_cast<int>(p), points);
   evaluator_.emplace(character, points);
@@ -112,7 +115,7 @@ void PinnedRig::evaluate_points(PointsD& out) {
   for (std::size_t p = 0; p < point_pin_.size(); ++p)
     out.row(point_pin_[p]) = found_.row(static_cast<Eigen::Index>(p));
   if (node_pins_.empty()) return;
-  const std::vector<Eigen::Matrix4d> model = model_matrices(skeleton_, pose_);
+  const std::vector<Eigen::Matrix4d> model = posed_matrices(skeleton_, pose_);
   for (const auto& [pin, node] : node_pins_) out.row(pin) = model[node].topRightCorner<3, 1>().transpose();
 }
 
@@ -128,7 +131,7 @@ void PinnedRig::differentiate_points() {
   for (int r = 0; r < row_count(); ++r)
     if (const int point = point_of[row_pin_[r]]; point >= 0)
       slopes_.row(r).noalias() = directions_[r].transpose() * point_slopes_.middleRows<3>(3 * point);
-  if (!node_pins_.empty() && !joints_.empty()) add_joint_point_rows(model_matrices(skeleton_, pose_));
+  if (!node_pins_.empty() && !joints_.empty()) add_joint_point_rows(posed_matrices(skeleton_, pose_));
 }
 
 /// A joint's origin p turns about the joints above it: U = parent's model matrix x T R, p = U v, dp = U (w x v).

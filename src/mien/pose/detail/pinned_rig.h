@@ -60,7 +60,7 @@ class PinnedRig {
   void add_region_rows(const Region& region, const Eigen::VectorXd& x, Eigen::MatrixXd& out);
 
   SliderMap map_;
-  Character skeleton_;  // nodes alone
+  Character skeleton_;  // nodes and what they obey
   std::vector<Joint> joints_;
   double length_ = 1;
   int sliders_ = 0;
