@@ -34,8 +34,17 @@ json describe_part(const Character& character, int index) {
   for (const Shape& shape : character.shapes)
     shapes += std::any_of(shape.parts.begin(), shape.parts.end(),
                           [&](const PartDelta& d) { return d.part == index; });
+  json attributes = json::array();
+  for (const VertexAttribute& attribute : part.mesh.attributes) attributes.push_back(attribute.name);
+  std::size_t points = 0, lines = 0;
+  for (const LooseElements& loose : part.mesh.loose)
+    (loose.lines ? lines : points) += loose.vertices.size() / (loose.lines ? 2 : 1);
   const Box box = bounding_box(part.mesh.positions);
   return {{"name", part.name},
+          {"shown", part.shown},
+          {"attributes", std::move(attributes)},
+          {"points", points},
+          {"lines", lines},
           {"vertices", part.mesh.vertex_count()},
           {"faces", part.mesh.faces.size()},
           {"triangles", triangles},
@@ -140,6 +149,16 @@ std::string joined(const json& names) {
   return text;
 }
 
+/// What a part carries that mien does nothing with.
+std::string carried_words(const json& part) {
+  std::string text;
+  if (!part["shown"].get<bool>()) text += "  not shown by any node";
+  if (part["points"].get<int>() > 0) text += fmt::format("  {} points", part["points"].get<int>());
+  if (part["lines"].get<int>() > 0) text += fmt::format("  {} lines", part["lines"].get<int>());
+  if (!part["attributes"].empty()) text += "  " + joined(part["attributes"]);
+  return text;
+}
+
 /// A table's cell: names of any length, numbers to the right.
 std::string part_rows(const json& parts) {
   std::size_t width = 4;
@@ -147,10 +166,10 @@ std::string part_rows(const json& parts) {
   std::string text = fmt::format("  {:<{}} {:>9} {:>9} {:>8} {:>4} {:>7} {:>11}\n", "part", width, "vertices",
                                  "faces", "n-gons", "UVs", "shapes", "influences");
   for (const json& part : parts)
-    text += fmt::format("  {:<{}} {:>9} {:>9} {:>8} {:>4} {:>7} {:>11}\n", part["name"].get<std::string>(),
+    text += fmt::format("  {:<{}} {:>9} {:>9} {:>8} {:>4} {:>7} {:>11}{}\n", part["name"].get<std::string>(),
                         width, part["vertices"].get<int>(), part["faces"].get<int>(),
                         part["quads"].get<int>() + part["ngons"].get<int>(), part["uv_sets"].get<int>(),
-                        part["shapes"].get<int>(), part["influences"].get<int>());
+                        part["shapes"].get<int>(), part["influences"].get<int>(), carried_words(part));
   return text;
 }
 

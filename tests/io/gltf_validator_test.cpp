@@ -60,6 +60,31 @@ class GltfValidator : public testing::Test {
   std::vector<std::filesystem::path> files_;
 };
 
+/// Attributes of every stored type, lines and points on the faces' vertices and on their own, a mesh that is not shown.
+Character carried() {
+  Character c = test::full_character();
+  Mesh& mesh = c.parts[0].mesh;
+  for (const int type : {5120, 5121, 5122, 5123, 5126})
+    for (const int width : {1, 2, 3, 4})
+      mesh.attributes.push_back({"_A" + std::to_string(type) + "_" + std::to_string(width), width, type,
+                                 type < 5126, std::vector<float>(25 * static_cast<std::size_t>(width), 1.f)});
+  mesh.loose = {{true, 0, {0, 1, 1, 2}}, {false, -1, {3, 4}}};
+  Part more = c.parts[1];
+  more.mesh.positions = Points::Random(7, 3);
+  more.mesh.tangents = Points4::Zero(7, 4);
+  more.mesh.tangents.topRows(3).col(0).setOnes();
+  more.mesh.tangents.topRows(3).col(3).setOnes();
+  more.mesh.loose = {{true, -1, {3, 4}}, {false, -1, {5, 6}}};
+  more.name = "loose";
+  more.node = -1;
+  Part spare = c.parts[0];
+  spare.shown = false;
+  spare.node = spare.skin = -1;
+  c.parts.push_back(more);
+  c.parts.push_back(spare);
+  return c;
+}
+
 TEST_F(GltfValidator, finds_faults_at_all) {
   EXPECT_NE(
       issues_of(packages_, {folder_.write("bad.gltf", R"({"asset": {"version": "2.0"}, "nodes": [7]})")}),
@@ -79,6 +104,7 @@ TEST_F(GltfValidator, finds_no_error_and_no_warning_in_what_we_write) {
   strip.parts[0].mesh = Mesh{};
   strip.parts[0].mesh.positions = Points::Random(5, 3);
   write(strip, "points");
+  write(carried(), "carried");
   EXPECT_EQ(issues_of(packages_, files_), "");
 }
 

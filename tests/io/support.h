@@ -129,6 +129,8 @@ inline void expect_same_mesh(const Mesh& a, const Mesh& b, float uv_tolerance = 
   expect_same_uvs(a.uvs, b.uvs, uv_tolerance);
   EXPECT_EQ(a.colors, b.colors);
   EXPECT_EQ(a.groups, b.groups);
+  EXPECT_EQ(a.attributes, b.attributes);
+  EXPECT_EQ(a.loose, b.loose);
 }
 
 inline void expect_same_shapes(const Character& a, const Character& b) {
@@ -196,6 +198,7 @@ inline void expect_same(const Character& a, const Character& b) {
     EXPECT_EQ(a.parts[p].mesh_name, b.parts[p].mesh_name);
     EXPECT_EQ(a.parts[p].node, b.parts[p].node);
     EXPECT_EQ(a.parts[p].skin, b.parts[p].skin);
+    EXPECT_EQ(a.parts[p].shown, b.parts[p].shown);
     EXPECT_EQ(a.parts[p].carried, b.parts[p].carried);
     EXPECT_EQ(a.parts[p].skin_weights, b.parts[p].skin_weights);
     expect_same_mesh(a.parts[p].mesh, b.parts[p].mesh);

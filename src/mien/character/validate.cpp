@@ -5,6 +5,8 @@
 #include <limits>
 #include <unordered_set>
 
+#include "mien/character/detail/validate_carried.h"
+
 namespace mien {
 namespace {
 
@@ -185,12 +187,15 @@ void Validator::check_groups(const Mesh& mesh, const std::string& place) {
 
 void Validator::check_skin_weights(const Part& part, const std::string& place) {
   const SkinWeights& skin = part.skin_weights;
-  if (skin.empty() || part.skin < 0 || part.skin >= static_cast<int>(character_.skins.size())) return;
+  const bool of_hidden =
+      !part.shown && part.skin < 0;  // whatever skin its joints belong to, files name 2^16 at most
+  if (skin.empty() || (part.skin < 0 && !of_hidden) || part.skin >= static_cast<int>(character_.skins.size()))
+    return;
   if (skin.offsets.size() != part.mesh.vertex_count() + 1 || skin.offsets.front() != 0 ||
       static_cast<std::size_t>(skin.offsets.back()) != skin.joints.size() ||
       skin.weights.size() != skin.joints.size() || !std::is_sorted(skin.offsets.begin(), skin.offsets.end()))
     return add(place, "has skin weights whose counts do not fit together", "give each vertex its influences");
-  const std::size_t joint_count = character_.skins[part.skin].joints.size();
+  const std::size_t joint_count = of_hidden ? 65536 : character_.skins[part.skin].joints.size();
   for (std::size_t v = 0; v < part.mesh.vertex_count(); ++v) {
     double sum = 0;
     const auto here = [&] { return place + ": vertex " + text_of(v); };
@@ -219,6 +224,7 @@ void Validator::check_mesh(const Part& part, const std::string& place) {
   check_faces(mesh, place);
   check_uvs(mesh, place);
   check_groups(mesh, place);
+  detail::check_carried(mesh, character_.appearance.materials.size(), place, problems_);
   in_range(part.node, -1, character_.nodes.size(), place, "node");
   in_range(part.skin, -1, character_.skins.size(), place, "skin");
   check_skin_weights(part, place);
@@ -435,7 +441,10 @@ std::vector<Problem> Validator::run() {
   check_skins();
   for (std::size_t p = 0; p < character_.parts.size(); ++p) {
     const Part& part = character_.parts[p];
-    check_mesh(part, "part " + (part.name.empty() ? text_of(p) : part.name));
+    const std::string place = "part " + (part.name.empty() ? text_of(p) : part.name);
+    check_mesh(part, place);
+    if (part.shown && p > 0 && !character_.parts[p - 1].shown)
+      add(place, "comes after a part that is not shown", "parts that are not shown come last");
   }
   check_shapes();
   check_wires();

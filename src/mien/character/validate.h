@@ -19,7 +19,7 @@ struct Problem {
 /// Everything that breaks what character.h promises: numbers that are not finite, indices out of range,
 /// arrays of unequal length, skin weights that do not sum to one, nodes that are their own ancestor, keys
 /// that do not ascend, rotations that are not unit, shapes, sliders or expressions of one name, stops
-/// that do not ascend, delta vertices that do not ascend. At
+/// that do not ascend, delta vertices that do not ascend, parts that are not shown before parts that are. At
 /// most one problem of a kind for each array, the first.
 ///   cost  linear
 std::vector<Problem> validate(const Character& character);

@@ -118,6 +118,10 @@ void SceneWriter::place_parts() {
   std::vector<bool> taken(character_.nodes.size(), false);
   for (std::size_t p = 0; p < character_.parts.size(); ++p) {
     const Part& part = character_.parts[p];
+    if (!part.shown) {
+      node_of_part.push_back(-1);
+      continue;
+    }
     int node = part.node;
     const bool must_move =
         node >= 0 && part.skin >= 0 &&

@@ -4,6 +4,7 @@
 #include <iterator>
 #include <string>
 
+#include "mien/character/shown_parts.h"
 #include "mien/character/validate.h"
 #include "mien/core/error.h"
 #include "mien/io/file.h"
@@ -40,8 +41,10 @@ class ObjWriter {
 
 std::string ObjWriter::write() {
   text_ = "# mien\n";
-  for (const Part& part : character_.parts) {
-    if (character_.parts.size() > 1) line("o {}\n", part.name);
+  const std::size_t count = shown_part_count(character_);
+  for (std::size_t p = 0; p < count; ++p) {
+    const Part& part = character_.parts[p];
+    if (count > 1) line("o {}\n", part.name);
     write_points(part);
     write_faces(part);
     first_.vertex += static_cast<int>(part.mesh.vertex_count());

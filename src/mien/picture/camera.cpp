@@ -1,11 +1,13 @@
 #include "mien/picture/camera.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
 #include <string>
 #include <utility>
 
+#include "mien/character/shown_parts.h"
 #include "mien/core/error.h"
 
 namespace mien {
@@ -117,8 +119,10 @@ Camera frame_points(const Points& points, const FrameOptions& options) {
 }
 
 Camera frame_head(const Character& character, const std::vector<Points>& posed, const FrameOptions& options) {
-  const Points all = stack(posed);
-  const Moved moved = moved_by_shapes(character, posed);
+  const std::vector<Points> seen(posed.begin(),
+                                 posed.begin() + std::min(posed.size(), shown_part_count(character)));
+  const Points all = stack(seen);
+  const Moved moved = moved_by_shapes(character, seen);
   if (moved.from.rows() == 0 || !all.allFinite() || !moved.to.allFinite()) return frame_points(all, options);
   const auto grown = [](Box box, double by) {
     box.low.array() -= by;

@@ -7,6 +7,7 @@
 #include <span>
 #include <string>
 
+#include "mien/character/shown_parts.h"
 #include "mien/core/error.h"
 
 namespace mien {
@@ -73,13 +74,14 @@ Rows by_shapes(const Character& character, const std::vector<Points>& posed, con
   Rows rows;
   for (const Shape& shape : character.shapes)
     if (names_one(shape.name, tokens.shapes))
-      for (const PartDelta& delta : shape.parts) add_most_moved(delta, posed[delta.part], rows);
+      for (const PartDelta& delta : shape.parts)
+        if (character.parts[delta.part].shown) add_most_moved(delta, posed[delta.part], rows);
   return rows;
 }
 
 Rows by_parts(const Character& character, const std::vector<Points>& posed, const Tokens& tokens) {
   Rows rows;
-  for (std::size_t p = 0; p < character.parts.size(); ++p)
+  for (std::size_t p = 0; p < shown_part_count(character); ++p)
     if (names_one(character.parts[p].name, tokens.parts) && !is_brow(character.parts[p].name))
       for (Eigen::Index v = 0; v < posed[p].rows(); ++v) rows.push_back(posed[p].row(v).cast<double>());
   return rows;

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "mien/character/landmark_points.h"
+#include "mien/character/shown_parts.h"
 #include "mien/core/error.h"
 #include "mien/geometry/laplacian.h"
 #include "mien/geometry/surface_query.h"
@@ -304,6 +305,8 @@ void Search::read_off() {
 
 FoundLandmarks find_landmarks(const Character& target, const Character& like,
                               const FindLandmarksOptions& options) {
+  const auto hides_some = [](const Character& c) { return shown_part_count(c) < c.parts.size(); };
+  if (hides_some(target) || hides_some(like)) return Search(only_shown(target), only_shown(like), options)();
   return Search(target, like, options)();
 }
 

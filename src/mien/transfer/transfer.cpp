@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 
+#include "mien/character/shown_parts.h"
 #include "mien/core/error.h"
 #include "mien/core/parallel.h"
 #include "mien/geometry/laplacian.h"
@@ -436,7 +437,20 @@ void Run::carry_clips() {
 }  // namespace
 
 TransferResult transfer(const Character& source, const Character& target, const TransferOptions& options) {
-  return Run(source, target, options)();
+  const std::size_t shown = shown_part_count(target);
+  if (shown == target.parts.size() && shown_part_count(source) == source.parts.size())
+    return Run(source, target, options)();
+  const Character seen_source = only_shown(source), seen_target = only_shown(target);
+  TransferResult result = Run(seen_source, seen_target, options)();
+  for (std::size_t p = seen_source.parts.size(); p < source.parts.size(); ++p)
+    result.report.guide.push_back(source.parts[p].mesh.positions);
+  for (std::size_t p = shown; p < target.parts.size(); ++p) {
+    result.character.parts.push_back(target.parts[p]);
+    const Eigen::Index count = target.parts[p].mesh.positions.rows();
+    result.report.distance.push_back(Eigen::VectorXf::Zero(count));
+    result.report.filled.push_back(Eigen::VectorXf::Zero(count));
+  }
+  return result;
 }
 
 }  // namespace mien

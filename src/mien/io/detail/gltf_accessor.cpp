@@ -57,6 +57,14 @@ Number converted(Stored stored, bool normalized) {
   return static_cast<Number>(stored);
 }
 
+void check_finite(const std::vector<float>& values, int accessor, int columns) {
+  for (std::size_t i = 0; i < values.size(); ++i)
+    if (!std::isfinite(values[i]))
+      throw io_error(fmt::format("accessors[{}]", accessor),
+                     fmt::format("element {} is not finite", i / static_cast<std::size_t>(columns)),
+                     "give finite numbers");
+}
+
 }  // namespace
 
 /// What an accessor says about its elements.
@@ -87,6 +95,9 @@ GltfDocument::Layout GltfDocument::layout_of(int index) const {
 
 int GltfDocument::columns_of(int accessor) const {
   return layout_of(accessor).columns;
+}
+bool GltfDocument::is_matrix(int accessor) const {
+  return element("accessors", accessor).text("type").starts_with("MAT");
 }
 int GltfDocument::rows_of(int accessor) const {
   return static_cast<int>(layout_of(accessor).rows);
@@ -164,9 +175,8 @@ std::vector<int> GltfDocument::sparse_indices(const JsonObject& sparse, const La
 }
 
 template <typename Number>
-std::vector<Number> GltfDocument::read(int index, int columns, int rows) {
+std::vector<Number> GltfDocument::read(int index, const Layout& layout, int columns, int rows) {
   const JsonObject accessor = element("accessors", index);
-  const Layout layout = layout_of(index);
   if (layout.columns != columns)
     throw io_error(accessor.place_of("type"), fmt::format("is {}", accessor.text("type")),
                    fmt::format("{} components are needed here", columns));
@@ -196,18 +206,28 @@ std::vector<Number> GltfDocument::read(int index, int columns, int rows) {
 
 Table GltfDocument::floats(int accessor, int columns, int rows) {
   Table table;
-  table.values = read<float>(accessor, columns, rows);
+  table.values = read<float>(accessor, layout_of(accessor), columns, rows);
   table.columns = columns;
   table.rows = static_cast<int>(table.values.size()) / columns;
-  for (std::size_t i = 0; i < table.values.size(); ++i)
-    if (!std::isfinite(table.values[i]))
-      throw io_error(fmt::format("accessors[{}]", accessor),
-                     fmt::format("element {} is not finite", i / columns), "give finite numbers");
+  check_finite(table.values, accessor, columns);
+  return table;
+}
+
+StoredTable GltfDocument::stored(int accessor, int rows) {
+  Layout layout = layout_of(accessor);
+  StoredTable table;
+  table.rows = rows;
+  table.columns = layout.columns;
+  table.component_type = layout.component_type;
+  table.normalized = layout.normalized && layout.component_type != f32;
+  layout.normalized = false;
+  table.values = read<float>(accessor, layout, layout.columns, rows);
+  check_finite(table.values, accessor, layout.columns);
   return table;
 }
 
 std::vector<std::uint32_t> GltfDocument::integers(int accessor, int columns, int rows) {
-  return read<std::uint32_t>(accessor, columns, rows);
+  return read<std::uint32_t>(accessor, layout_of(accessor), columns, rows);
 }
 
 SparseTable GltfDocument::sparse_rows(int index, int rows) {

@@ -15,7 +15,7 @@
 namespace mien::detail {
 namespace {
 
-enum ComponentType { type_u8 = 5121, type_u16 = 5123, type_u32 = 5125, type_f32 = 5126 };
+enum ComponentType { type_i8 = 5120, type_u8, type_i16, type_u16, type_u32 = 5125, type_f32 };
 enum Target { array_buffer = 34962, element_array_buffer = 34963 };
 
 template <typename Number>
@@ -209,7 +209,37 @@ int GltfBuilder::add_deltas(int rows, std::span<const int> vertices, const Point
   return accessor;
 }
 
-int GltfBuilder::add_triangles(const std::vector<std::uint32_t>& indices, std::uint32_t vertex_count) {
+/// Whole numbers of one type, each row padded to a multiple of four bytes.
+template <typename Number>
+static std::vector<std::uint8_t> padded(std::span<const float> values, int columns, int stride) {
+  const std::size_t rows = values.size() / static_cast<std::size_t>(columns);
+  std::vector<std::uint8_t> bytes(rows * static_cast<std::size_t>(stride), 0);
+  for (std::size_t r = 0; r < rows; ++r)
+    for (int c = 0; c < columns; ++c) {
+      const auto number = static_cast<Number>(values[r * columns + c]);
+      std::memcpy(bytes.data() + r * stride + c * sizeof number, &number, sizeof number);
+    }
+  return bytes;
+}
+
+int GltfBuilder::add_custom(std::span<const float> values, const VertexAttribute& attribute) {
+  const int columns = attribute.width, type = attribute.component_type;
+  if (type == type_f32) return add_attribute(values, columns, Precision{});
+  const bool narrow = type == type_i8 || type == type_u8;
+  const int size = (narrow ? 1 : 2) * columns, stride = (size + 3) / 4 * 4;
+  const std::vector<std::uint8_t> bytes = type == type_i8    ? padded<std::int8_t>(values, columns, stride)
+                                          : type == type_u8  ? padded<std::uint8_t>(values, columns, stride)
+                                          : type == type_i16 ? padded<std::int16_t>(values, columns, stride)
+                                                             : padded<std::uint16_t>(values, columns, stride);
+  const int view = add_view(bytes, stride, Use::attribute);
+  views_[view]["target"] = array_buffer;
+  if (stride != size) views_[view]["byteStride"] = stride;
+  const int accessor = add_accessor(view, type, columns, values.size() / columns);
+  if (attribute.normalized) accessors_[accessor]["normalized"] = true;
+  return accessor;
+}
+
+int GltfBuilder::add_indices(const std::vector<std::uint32_t>& indices, std::uint32_t vertex_count) {
   int accessor;
   if (vertex_count <= 65535) {  // 65535 itself restarts a primitive
     const std::vector<std::uint16_t> narrow(indices.begin(), indices.end());

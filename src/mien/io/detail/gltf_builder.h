@@ -30,8 +30,10 @@ class GltfBuilder {
   int add_attribute(std::span<const std::uint16_t> values, int columns, bool normalized);
   /// Displacements of `rows` vertices, zero but at `vertices`; sparse when that is smaller.
   int add_deltas(int rows, std::span<const int> vertices, const Points& deltas, Precision precision);
-  /// Triangle corners; two bytes each where they fit.
-  int add_triangles(const std::vector<std::uint32_t>& indices, std::uint32_t vertex_count);
+  /// A custom attribute of `values` in its own type; every element starts at a multiple of four bytes.
+  int add_custom(std::span<const float> values, const VertexAttribute& attribute);
+  /// Corners of triangles, ends of lines, points; two bytes each where they fit.
+  int add_indices(const std::vector<std::uint32_t>& indices, std::uint32_t vertex_count);
   /// Numbers that only the vendor extension reads.
   int add_numbers(const std::vector<std::uint32_t>& numbers);
   /// Animation data or matrices. Equal data is stored once.

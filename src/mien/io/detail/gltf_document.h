@@ -22,6 +22,13 @@ struct Table {
   std::vector<float> values;
 };
 
+/// Numbers of one accessor as the file stores them: whole numbers are not scaled.
+struct StoredTable {
+  int rows = 0, columns = 0, component_type = 0;
+  bool normalized = false;
+  std::vector<float> values;
+};
+
 /// The rows of an accessor that are not zero.
 struct SparseTable {
   std::vector<int> rows;  ///< ascending
@@ -42,11 +49,15 @@ class GltfDocument {
   /// An accessor as floats; normalised integers become [0, 1] or [-1, 1].
   ///   columns  what the accessor must have (1 SCALAR ... 4 VEC4, 16 MAT4); rows: how many, or -1 for any
   Table floats(int accessor, int columns, int rows = -1);
+  /// An accessor of any type as stored; 32-bit whole numbers become the nearest floats.
+  StoredTable stored(int accessor, int rows);
   /// An accessor of unsigned integers.
   std::vector<std::uint32_t> integers(int accessor, int columns, int rows = -1);
   /// A VEC3 accessor of displacements without its zero rows; sparse accessors are never made dense.
   SparseTable sparse_rows(int accessor, int rows);
   int columns_of(int accessor) const;
+  /// Whether the accessor holds matrices, whose columns files pad.
+  bool is_matrix(int accessor) const;
   int rows_of(int accessor) const;
 
   /// The bytes of a buffer view, decompressed.
@@ -72,7 +83,7 @@ class GltfDocument {
   void read_rows(const Slice& slice, const Layout& layout, std::span<const int> to,
                  std::vector<Number>& values) const;
   template <typename Number>
-  std::vector<Number> read(int accessor, int columns, int rows);
+  std::vector<Number> read(int accessor, const Layout& layout, int columns, int rows);
   void spend(std::size_t bytes, const std::string& place);
 
   std::filesystem::path folder_;

@@ -111,6 +111,13 @@ void ClipReader::read_transform(Channel channel, const JsonObject& sampler, Clip
   clip.channels.push_back(std::move(channel));
 }
 
+/// How many parts that a clip can animate have the shape.
+std::size_t shown_parts(const Character& character, int shape) {
+  const std::vector<PartDelta>& parts = character.shapes[shape].parts;
+  return static_cast<std::size_t>(std::count_if(
+      parts.begin(), parts.end(), [&](const PartDelta& delta) { return character.parts[delta.part].shown; }));
+}
+
 /// One channel a shape. A shape that this part alone has gets a channel for all parts.
 void ClipReader::read_weights(const Channel& common, const JsonObject& sampler, Clip& clip) {
   const auto part = std::find_if(character_.parts.begin(), character_.parts.end(),
@@ -131,7 +138,7 @@ void ClipReader::read_weights(const Channel& common, const JsonObject& sampler, 
     channel.property = Channel::Property::shape_weight;
     channel.node = -1;
     channel.shape = shapes[s];
-    channel.part = character_.shapes[shapes[s]].parts.size() == 1 ? -1 : part_index;
+    channel.part = shown_parts(character_, shapes[s]) == 1 ? -1 : part_index;
     for (std::size_t row = 0; row < keys * values_a_key; ++row)
       channel.values.push_back(table.values[row * shapes.size() + s]);
     clip.channels.push_back(std::move(channel));
@@ -147,7 +154,7 @@ void merge_equal_parts(const Character& character, Clip& clip) {
   std::vector<bool> drop(clip.channels.size(), false);
   for (std::size_t s = 0; s < by_shape.size(); ++s) {
     const std::vector<std::size_t>& same = by_shape[s];
-    if (same.empty() || same.size() != character.shapes[s].parts.size()) continue;
+    if (same.empty() || same.size() != shown_parts(character, static_cast<int>(s))) continue;
     Channel& first = clip.channels[same[0]];
     const bool equal = std::all_of(same.begin(), same.end(), [&](std::size_t c) {
       const Channel& other = clip.channels[c];

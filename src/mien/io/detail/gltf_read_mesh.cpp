@@ -12,13 +12,19 @@
 namespace mien::detail {
 namespace {
 
-enum Mode { points = 0, triangles = 4, triangle_strip = 5, triangle_fan = 6 };
+enum Mode { points = 0, lines, line_loop, line_strip, triangles, triangle_strip, triangle_fan };
 
 /// A run of vertices that one or more primitives index.
 struct Range {
   int begin = 0, end = 0;
   bool has_normals = false;
   int count() const { return end - begin; }
+};
+
+/// A range and the accessors that it came from.
+struct KnownRange {
+  Json accessors;  ///< attributes and targets
+  Range range;
 };
 
 template <typename Rows>
@@ -36,11 +42,15 @@ class MeshReader {
   MeshData read(const JsonObject& mesh);
 
  private:
-  void add_primitive(const JsonObject& primitive);
+  void add_faces(const JsonObject& primitive);
+  void add_loose(const JsonObject& primitive);
+  Range range_of(const JsonObject& primitive);
   Range append_vertices(const JsonObject& primitive);
   void append_uvs(const JsonObject& attributes, const Range& range);
   void append_colors(const JsonObject& attributes, const Range& range);
   void append_influences_of(const JsonObject& attributes, const Range& range);
+  void append_custom(const JsonObject& attributes, const Range& range);
+  std::vector<std::uint32_t> indices_of(const JsonObject& primitive, const Range& range);
   void append_targets(const JsonObject& primitive, const Range& range);
   void append_faces(const JsonObject& primitive, const Range& range);
   void push_triangle(int a, int b, int c, const Range& range);
@@ -52,37 +62,86 @@ class MeshReader {
   GltfDocument& document_;
   bool skinned_;
   MeshData data_;
-  std::map<std::string, Range> ranges_;
+  std::map<std::string, Range> ranges_;     ///< by all accessors
+  std::map<int, KnownRange> first_ranges_;  ///< the first that has these positions
   std::optional<std::size_t> target_count_;
   bool tangents_everywhere_ = true;
 };
 
 MeshData MeshReader::read(const JsonObject& mesh) {
+  // The points of a part that has neither faces nor anything loose stand for its vertices.
+  const bool only_vertices = mesh.has("extensions") && mesh.object("extensions").has(vendor_extension) &&
+                             mesh.object("extensions").object(vendor_extension).truth_or("points", false);
   Json carried = Json::array();
   bool carries = false;
-  // Points and lines are no surface, but mien writes a part without faces as points.
-  const bool keeps_points = mesh.has("extensions") && mesh.object("extensions").has(vendor_extension) &&
-                            mesh.object("extensions").object(vendor_extension).truth_or("points", false);
-  for (const JsonObject& primitive : mesh.objects("primitives")) {
-    const std::int64_t mode = primitive.integer_or("mode", triangles, 0, 6);
-    if (mode < triangles && !(keeps_points && mode == points)) continue;
-    add_primitive(primitive);
+  const auto add = [&](const JsonObject& primitive, bool faces) {
+    const std::int64_t mode = primitive.integer_or("mode", triangles, points, triangle_fan);
+    if (faces != (mode >= triangles || (mode == points && only_vertices))) return;
+    if (!faces && !primitive.object("attributes").has("POSITION")) return;  // draws nothing
+    if (faces)
+      add_faces(primitive);
+    else
+      add_loose(primitive);
     const std::string others = primitive.others({"attributes", "indices", "material", "mode", "targets"});
     carries = carries || !others.empty();
     carried.push_back(others.empty() ? Json::object() : Json::parse(others));
-  }
+  };
+  // As they are written: faces first, so that points and lines do not change the numbers of the faces' vertices.
+  for (const bool faces : {true, false})
+    for (const JsonObject& primitive : mesh.objects("primitives")) add(primitive, faces);
   if (carries) data_.carried_primitives = json_text(carried);
   complete_attributes();
   return std::move(data_);
 }
 
-void MeshReader::add_primitive(const JsonObject& primitive) {
-  Json key = Json::array({primitive.object("attributes").json()});
-  if (primitive.has("targets")) key.push_back(primitive.json().at("targets"));
-  const std::string name = json_text(key);
-  const auto known = ranges_.find(name);
-  const Range range = known != ranges_.end() ? known->second : append_vertices(primitive);
-  ranges_.emplace(name, range);
+/// Whether `some` has no accessor that `all` has not.
+bool is_part_of(const Json& some, const Json& all) {
+  if (some[1] != all[1]) return false;
+  for (const auto& [name, accessor] : some[0].items())
+    if (!all[0].contains(name) || all[0][name] != accessor) return false;
+  return true;
+}
+
+/// Primitives of the same accessors share their vertices. Points and lines that have some of another's and no others do
+/// too, because points have no tangents.
+Range MeshReader::range_of(const JsonObject& primitive) {
+  const Json accessors = {primitive.object("attributes").json(),
+                          primitive.has("targets") ? primitive.json().at("targets") : Json()};
+  const std::string key = json_text(accessors);
+  if (const auto known = ranges_.find(key); known != ranges_.end()) return known->second;
+  const int positions = primitive.object("attributes").index("POSITION", document_.count("accessors"));
+  const auto first = first_ranges_.find(positions);
+  const bool is_loose = primitive.integer_or("mode", triangles, points, triangle_fan) < triangles;
+  const bool shares =
+      is_loose && first != first_ranges_.end() && is_part_of(accessors, first->second.accessors);
+  const Range range = shares ? first->second.range : append_vertices(primitive);
+  ranges_.emplace(key, range);
+  first_ranges_.emplace(positions, KnownRange{accessors, range});
+  return range;
+}
+
+void MeshReader::add_loose(const JsonObject& primitive) {
+  const std::int64_t mode = primitive.integer_or("mode", triangles, points, line_strip);
+  const Range range = range_of(primitive);
+  const std::vector<std::uint32_t> indices = indices_of(primitive, range);
+  LooseElements loose;
+  loose.lines = mode != points;
+  loose.material = primitive.index_or_none("material", document_.count("materials"));
+  const auto add = [&](std::size_t i) {
+    loose.vertices.push_back(range.begin + static_cast<int>(indices[i]));
+  };
+  if (mode == points || mode == lines) {
+    const std::size_t whole = mode == lines ? indices.size() / 2 * 2 : indices.size();
+    for (std::size_t i = 0; i < whole; ++i) add(i);
+  } else {
+    const std::size_t ends = mode == line_loop ? indices.size() : indices.size() - 1;
+    for (std::size_t i = 0; i < ends && indices.size() > 1; ++i) add(i), add((i + 1) % indices.size());
+  }
+  if (!loose.vertices.empty()) data_.mesh.loose.push_back(std::move(loose));
+}
+
+void MeshReader::add_faces(const JsonObject& primitive) {
+  const Range range = range_of(primitive);
   FaceGroup group;
   group.material = primitive.index_or_none("material", document_.count("materials"));
   group.face_begin = static_cast<int>(data_.mesh.faces.size());
@@ -114,12 +173,13 @@ Range MeshReader::append_vertices(const JsonObject& primitive) {
     grow(mesh.tangents, range.end);
     mesh.tangents.bottomRows(range.count()) =
         Eigen::Map<const Points4>(table.values.data(), range.count(), 4);
-  } else {
+  } else if (primitive.integer_or("mode", triangles, points, triangle_fan) >= triangles) {
     tangents_everywhere_ = false;
   }
   append_uvs(attributes, range);
   append_colors(attributes, range);
   if (skinned_) append_influences_of(attributes, range);
+  append_custom(attributes, range);
   append_targets(primitive, range);
   return range;
 }
@@ -170,6 +230,57 @@ void MeshReader::append_influences_of(const JsonObject& attributes, const Range&
                               weights[set].values[4 * r + c]});
     tidy_influences(influences);
     append_influences(data_.skin_weights, influences);
+  }
+}
+
+/// The numbers of an attribute as others understand them.
+void decode(VertexAttribute& attribute) {
+  const float one = attribute.component_type == 5120   ? 127.f
+                    : attribute.component_type == 5121 ? 255.f
+                    : attribute.component_type == 5122 ? 32767.f
+                                                       : 65535.f;
+  if (attribute.normalized)
+    for (float& value : attribute.values) value = std::max(value / one, -1.f);
+  attribute.component_type = 5126;
+  attribute.normalized = false;
+}
+
+/// Puts zeros behind each vertex's numbers.
+void widen(VertexAttribute& attribute, int width) {
+  const std::size_t rows = attribute.values.size() / attribute.width;
+  std::vector<float> wide(rows * width, 0.f);
+  for (std::size_t r = 0; r < rows; ++r)
+    std::copy_n(attribute.values.begin() + r * attribute.width, attribute.width, wide.begin() + r * width);
+  attribute.values = std::move(wide);
+  attribute.width = width;
+}
+
+/// Attributes `_NAME`. Primitives that store one differently get it as floats of the widest.
+void MeshReader::append_custom(const JsonObject& attributes, const Range& range) {
+  for (const auto& [name, value] : attributes.json().items()) {
+    if (!name.starts_with('_')) continue;
+    const int index = attributes.index(name.c_str(), document_.count("accessors"));
+    if (document_.is_matrix(index)) continue;
+    StoredTable table = document_.stored(index, range.count());
+    VertexAttribute read{name, table.columns, table.component_type, table.normalized,
+                         std::move(table.values)};
+    if (read.component_type == 5125)
+      read.component_type = 5126, read.normalized = false;  // glTF forbids 32 bits here
+    std::vector<VertexAttribute>& all = data_.mesh.attributes;
+    auto found = std::find_if(all.begin(), all.end(), [&](const auto& a) { return a.name == read.name; });
+    if (found == all.end()) {
+      all.push_back(std::move(read));
+      all.back().values.insert(all.back().values.begin(),
+                               static_cast<std::size_t>(range.begin) * all.back().width, 0.f);
+      continue;
+    }
+    if (found->component_type != read.component_type || found->normalized != read.normalized)
+      decode(*found), decode(read);
+    const int width = std::max(found->width, read.width);
+    if (found->width < width) widen(*found, width);
+    if (read.width < width) widen(read, width);
+    found->values.resize(static_cast<std::size_t>(range.begin) * width, 0.f);
+    found->values.insert(found->values.end(), read.values.begin(), read.values.end());
   }
 }
 
@@ -228,8 +339,7 @@ void MeshReader::push_triangle(int a, int b, int c, const Range& range) {
   data_.mesh.faces.push_back({range.begin + a, range.begin + b, range.begin + c});
 }
 
-void MeshReader::append_faces(const JsonObject& primitive, const Range& range) {
-  if (primitive.integer_or("mode", triangles, 0, 6) == points) return;
+std::vector<std::uint32_t> MeshReader::indices_of(const JsonObject& primitive, const Range& range) {
   std::vector<std::uint32_t> indices;
   if (const int index = accessor(primitive, "indices"); index >= 0) {
     indices = document_.integers(index, 1);
@@ -241,8 +351,15 @@ void MeshReader::append_faces(const JsonObject& primitive, const Range& range) {
     indices.resize(range.count());
     for (int i = 0; i < range.count(); ++i) indices[i] = i;
   }
+  return indices;
+}
+
+void MeshReader::append_faces(const JsonObject& primitive, const Range& range) {
+  const std::int64_t mode = primitive.integer_or("mode", triangles, points, triangle_fan);
+  if (mode == points) return;
+  const std::vector<std::uint32_t> indices = indices_of(primitive, range);
   const auto at = [&](std::size_t i) { return static_cast<int>(indices[i]); };
-  switch (primitive.integer_or("mode", triangles, 0, 6)) {
+  switch (mode) {
     case triangle_strip:
       for (std::size_t i = 2; i < indices.size(); ++i)
         push_triangle(at(i - 2 + i % 2), at(i - 1 - i % 2), at(i), range);
@@ -266,6 +383,9 @@ void MeshReader::complete_attributes() {
   const Eigen::Index count = mesh.positions.rows();
   for (UvSet& uv : mesh.uvs) grow(uv.coordinates, count);
   for (Points4& colors : mesh.colors) grow(colors, count, 1.f);
+  for (VertexAttribute& attribute : mesh.attributes)
+    attribute.values.resize(static_cast<std::size_t>(count) * attribute.width, 0.f);
+  if (mesh.tangents.rows() > 0) grow(mesh.tangents, count);
   if (!tangents_everywhere_) mesh.tangents.resize(0, 4);
   if (mesh.normals.rows() > 0) {
     grow(mesh.normals, count);

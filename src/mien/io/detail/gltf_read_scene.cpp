@@ -120,10 +120,16 @@ std::string mesh_carried(const JsonObject& mesh, const MeshData& data) {
   return carried.empty() ? std::string() : json_text(carried);
 }
 
-/// A mesh in the scene, before its shapes have numbers.
+/// A mesh of the file and the node that shows it, -1: none does.
 struct FoundMesh {
   int mesh, node;
 };
+
+bool has_influences(const JsonObject& mesh) {
+  for (const JsonObject& primitive : mesh.objects("primitives"))
+    if (primitive.object("attributes").has("JOINTS_0")) return true;
+  return false;
+}
 
 std::vector<FoundMesh> find_meshes(const GltfDocument& document) {
   std::vector<FoundMesh> found;
@@ -135,6 +141,10 @@ std::vector<FoundMesh> find_meshes(const GltfDocument& document) {
   // In the order of the meshes, because extensions name meshes by number.
   std::stable_sort(found.begin(), found.end(),
                    [](const FoundMesh& a, const FoundMesh& b) { return a.mesh < b.mesh; });
+  std::vector<bool> shown(document.count("meshes"), false);
+  for (const FoundMesh& mesh : found) shown[mesh.mesh] = true;
+  for (std::size_t m = 0; m < shown.size(); ++m)
+    if (!shown[m]) found.push_back({static_cast<int>(m), -1});
   return found;
 }
 
@@ -202,23 +212,26 @@ std::vector<PartSource> read_parts(GltfDocument& document, Character& character)
   std::unordered_map<std::string, double> rest;
   NameOrder order;
   for (const FoundMesh& found : find_meshes(document)) {
-    const JsonObject mesh = document.element("meshes", found.mesh),
-                     node = document.element("nodes", found.node);
+    const JsonObject mesh = document.element("meshes", found.mesh);
     Part part;
     part.node = found.node;
-    part.skin = node.index_or_none("skin", character.skins.size());
-    MeshData data = read_mesh(document, found.mesh, part.skin >= 0);
-    if (data.mesh.positions.rows() == 0) continue;  // points or lines alone
+    part.shown = found.node >= 0;
+    if (part.shown)
+      part.skin = document.element("nodes", found.node).index_or_none("skin", character.skins.size());
+    MeshData data = read_mesh(document, found.mesh, part.skin >= 0 || (!part.shown && has_influences(mesh)));
+    if (data.mesh.positions.rows() == 0) continue;
     part.mesh_name = mesh.text_or("name", "");
-    const std::string& node_name = character.nodes[found.node].name;
-    part.name = !node_name.empty() ? node_name : part.mesh_name;
+    part.name = part.shown ? character.nodes[found.node].name : "";
+    if (part.name.empty()) part.name = part.mesh_name;
     if (part.name.empty()) part.name = fmt::format("mesh_{}", found.mesh);
     part.carried = mesh_carried(mesh, data);
     part.mesh = std::move(data.mesh);
     part.skin_weights = std::move(data.skin_weights);
     names.push_back(target_names(mesh, data.targets.size(), part.name));
     targets.push_back(std::move(data.targets));
-    const std::vector<double> weights = (node.has("weights") ? node : mesh).numbers("weights");
+    const bool own = part.shown && document.element("nodes", found.node).has("weights");
+    const std::vector<double> weights =
+        (own ? document.element("nodes", found.node) : mesh).numbers("weights");
     for (std::size_t t = 0; t < std::min(weights.size(), names.back().size()); ++t)
       rest.emplace(names.back()[t], weights[t]);
     order.add(names.back());

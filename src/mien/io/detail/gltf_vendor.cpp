@@ -221,6 +221,11 @@ void Restorer::drop_copies(const std::vector<PartDelta*>& deltas) {
   if (mesh.normals.rows() > 0) mesh.normals.conservativeResize(vertex_count_, Eigen::NoChange);
   if (mesh.tangents.rows() > 0) mesh.tangents.conservativeResize(vertex_count_, Eigen::NoChange);
   for (Points4& colors : mesh.colors) colors.conservativeResize(vertex_count_, Eigen::NoChange);
+  for (VertexAttribute& attribute : mesh.attributes)
+    attribute.values.resize(static_cast<std::size_t>(vertex_count_) * attribute.width);
+  for (LooseElements& loose : mesh.loose)
+    for (int& v : loose.vertices)
+      if (v >= vertex_count_) v = static_cast<int>(copy_of_[v - vertex_count_]);
   if (!part_.skin_weights.empty()) {
     SkinWeights& skin = part_.skin_weights;
     skin.offsets.resize(vertex_count_ + 1);
@@ -269,7 +274,7 @@ Json vendor_mesh(const Mesh& mesh, const SplitMesh& split, bool normals_computed
       vendor["groups"].push_back(std::move(description));
     }
   }
-  if (mesh.faces.empty()) vendor["points"] = true;
+  if (mesh.faces.empty() && mesh.loose.empty()) vendor["points"] = true;
   if (normals_computed) vendor["normalsComputed"] = true;
   return vendor;
 }

@@ -1,6 +1,8 @@
 #pragma once
 /// The steps of writing a Character as glTF; write_gltf runs them in this order.
 
+#include <set>
+#include <utility>
 #include <vector>
 
 #include "mien/character/character.h"
@@ -20,6 +22,23 @@ struct SplitMesh {
   int vertex_of(int row) const { return row < vertex_count ? row : copy_of[row - vertex_count]; }
 };
 SplitMesh split_seams(const Mesh& mesh);
+
+/// The runs of rows that share accessors: those of the face groups and what comes after them where faces, lines and points
+/// keep to them; otherwise all rows are one.
+class VertexRanges {
+ public:
+  VertexRanges(const Mesh& mesh, const SplitMesh& split);
+  /// Whether [begin, end) is the range of some face group.
+  bool has_faces(int begin, int end) const { return faces_.contains({begin, end}); }
+  /// The range that holds the element's first vertex.
+  std::pair<int, int> of(const LooseElements& loose) const;
+
+ private:
+  bool follow_groups(const Mesh& mesh);
+  bool fits(const Mesh& mesh) const;
+  int rows_;
+  std::set<std::pair<int, int>> faces_, ranges_;
+};
 
 /// The parts as glTF meshes, in order.
 Json write_meshes(const Character& character, GltfBuilder& builder);

@@ -187,7 +187,8 @@ void ClipWriter::add(int node, const char* path, const Channel& keys) {
 }
 
 bool ClipWriter::drives(const Channel& channel, int part) const {
-  if (channel.property != Channel::Property::shape_weight || (channel.part >= 0 && channel.part != part))
+  if (channel.property != Channel::Property::shape_weight || (channel.part >= 0 && channel.part != part) ||
+      !character_.parts[part].shown)
     return false;
   const std::vector<PartDelta>& parts = character_.shapes[channel.shape].parts;
   return std::any_of(parts.begin(), parts.end(), [&](const PartDelta& delta) { return delta.part == part; });
@@ -277,7 +278,7 @@ Json ClipWriter::write(const Clip& whole) {
   animation["samplers"] = std::move(samplers_);
   animation["channels"] = std::move(channels_);
   Json members = vendor(whole);
-  if (animation["channels"].empty() && members.contains("wires")) {
+  if (animation["channels"].empty() && members.contains("wires") && character_.parts.at(0).shown) {
     hold_still(whole);
     animation["samplers"] = std::move(samplers_);
     animation["channels"] = std::move(channels_);

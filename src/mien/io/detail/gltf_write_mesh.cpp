@@ -40,11 +40,25 @@ Points normals_of(const Mesh& mesh) {
   return normals;
 }
 
+/// The same for tangents; a vertex without one gets +X.
+Points4 tangents_of(const Mesh& mesh) {
+  Points4 tangents = mesh.tangents;
+  for (Eigen::Index v = 0; v < tangents.rows(); ++v)
+    if ((tangents.row(v).array() == 0).all()) tangents.row(v) << 1, 0, 0, 1;
+  return tangents;
+}
+
 /// The arrays of one vertex range, written once and shared by all primitives that use it.
 struct WrittenRange {
   Json attributes;
   Json targets = Json::array();
 };
+
+/// Whether the rows say something: zeros stand for vertices that have none.
+template <typename Rows>
+bool any_in(const Rows& rows, int begin, int end) {
+  return begin < end && (rows.middleRows(begin, end - begin).array() != 0).any();
+}
 
 class MeshWriter {
  public:
@@ -54,42 +68,41 @@ class MeshWriter {
         part_(character.parts[part]),
         builder_(builder),
         split_(split_seams(part_.mesh)),
+        ranges_(part_.mesh, split_),
         normals_(normals_of(part_.mesh)),
         precision_{builder_error * bounding_box(part_.mesh.positions).diagonal()} {}
   Json write();
 
  private:
   static constexpr double builder_error = 1e-5 / 1.7321;  // a component's share of 1e-5 of the box
+  const WrittenRange& range(std::pair<int, int> rows);
   WrittenRange write_range(int begin, int end);
+  void write_directions(int begin, int end, Json& attributes);
+  void write_custom(int begin, int end, Json& attributes);
+  void write_primitives(Json& primitives);
   void write_influences(int begin, int end, Json& attributes);
   void write_targets(int begin, int end, Json& targets);
-  Json write_primitive(const FaceGroup& group, const WrittenRange& range, int first_row, int rows);
+  Json write_faces(const FaceGroup& group);
+  Json write_loose(const LooseElements& loose);
 
   const Character& character_;
   int part_index_;
   const Part& part_;
   GltfBuilder& builder_;
   SplitMesh split_;
+  VertexRanges ranges_;
   Points normals_;
   Precision precision_;
+  std::map<std::pair<int, int>, WrittenRange> written_;
 };
 
 Json MeshWriter::write() {
   Json mesh = carried_json(part_.carried, fmt::format("part {}: carried", part_.name));
   const Json carried_primitives = mesh.value("primitives", Json::array());
   mesh["primitives"] = Json::array();
-  std::vector<std::pair<std::pair<int, int>, WrittenRange>> written;
-  for (const FaceGroup& group : primitive_groups(part_.mesh, split_)) {
-    const std::pair<int, int> key(group.vertex_begin, group.vertex_end);
-    auto found = std::find_if(written.begin(), written.end(), [&](const auto& w) { return w.first == key; });
-    if (found == written.end())
-      found = written.insert(written.end(), {key, write_range(key.first, key.second)});
-    Json primitive = write_primitive(group, found->second, key.first, key.second - key.first);
-    const std::size_t number = mesh["primitives"].size();
-    if (number < carried_primitives.size() && carried_primitives[number].is_object())
-      primitive.update(carried_primitives[number]);
-    mesh["primitives"].push_back(std::move(primitive));
-  }
+  write_primitives(mesh["primitives"]);
+  for (std::size_t p = 0; p < mesh["primitives"].size() && p < carried_primitives.size(); ++p)
+    if (carried_primitives[p].is_object()) mesh["primitives"][p].update(carried_primitives[p]);
   mesh["name"] = part_.mesh_name.empty() ? part_.name : part_.mesh_name;
   if (!mesh["extras"].is_object()) mesh.erase("extras");
   Json names = Json::array(), weights = Json::array();
@@ -106,12 +119,50 @@ Json MeshWriter::write() {
     mesh["extras"]["targetNames"] = names;
     mesh["weights"] = weights;
   }
-  Json vendor =
-      vendor_mesh(part_.mesh, split_, part_.mesh.normals.rows() != part_.mesh.positions.rows(), builder_);
+  const bool computed = part_.mesh.normals.rows() != part_.mesh.positions.rows();
+  Json vendor = vendor_mesh(part_.mesh, split_, computed && !part_.mesh.faces.empty(), builder_);
   write_surface(part_, vendor);
   if (!vendor.empty()) vendor["vertexCount"] = split_.vertex_count;
   if (!vendor.empty()) mesh["extensions"][vendor_extension] = vendor;
   return mesh;
+}
+
+void MeshWriter::write_primitives(Json& primitives) {
+  for (const FaceGroup& group : primitive_groups(part_.mesh, split_))
+    primitives.push_back(write_faces(group));
+  for (const LooseElements& loose : part_.mesh.loose) primitives.push_back(write_loose(loose));
+}
+
+const WrittenRange& MeshWriter::range(std::pair<int, int> rows) {
+  const auto known = written_.find(rows);
+  if (known != written_.end()) return known->second;
+  return written_.emplace(rows, write_range(rows.first, rows.second)).first->second;
+}
+
+/// Normals and tangents, where the range has any: what only lines and points use need not.
+void MeshWriter::write_directions(int begin, int end, Json& attributes) {
+  constexpr Precision direction{1.0 / 65536};
+  const Mesh& mesh = part_.mesh;
+  const bool own = mesh.normals.rows() == mesh.positions.rows();
+  const bool has_faces = ranges_.has_faces(begin, end);
+  const int last = std::min(end, split_.vertex_count);
+  if (has_faces || (own && any_in(mesh.normals, begin, last)))
+    attributes["NORMAL"] = builder_.add_attribute(flat(rows_of(normals_, split_, begin, end)), 3, direction);
+  if (mesh.tangents.rows() == mesh.positions.rows() && mesh.tangents.rows() > 0 &&
+      (has_faces || any_in(mesh.tangents, begin, last)))
+    attributes["TANGENT"] =
+        builder_.add_attribute(flat(rows_of(tangents_of(mesh), split_, begin, end)), 4, direction);
+}
+
+void MeshWriter::write_custom(int begin, int end, Json& attributes) {
+  for (const VertexAttribute& attribute : part_.mesh.attributes) {
+    std::vector<float> values;
+    for (int r = begin; r < end; ++r) {
+      const auto from = attribute.values.begin() + split_.vertex_of(r) * attribute.width;
+      values.insert(values.end(), from, from + attribute.width);
+    }
+    attributes[attribute.name] = builder_.add_custom(values, attribute);
+  }
 }
 
 WrittenRange MeshWriter::write_range(int begin, int end) {
@@ -119,12 +170,8 @@ WrittenRange MeshWriter::write_range(int begin, int end) {
   const Mesh& mesh = part_.mesh;
   range.attributes["POSITION"] =
       builder_.add_attribute(flat(rows_of(mesh.positions, split_, begin, end)), 3, precision_, true);
-  constexpr Precision direction{1.0 / 65536}, color{1.0 / 1024}, uv{1.0 / 131072};
-  range.attributes["NORMAL"] =
-      builder_.add_attribute(flat(rows_of(normals_, split_, begin, end)), 3, direction);
-  if (mesh.tangents.rows() == mesh.positions.rows() && mesh.tangents.rows() > 0)
-    range.attributes["TANGENT"] =
-        builder_.add_attribute(flat(rows_of(mesh.tangents, split_, begin, end)), 4, direction);
+  constexpr Precision color{1.0 / 1024}, uv{1.0 / 131072};
+  write_directions(begin, end, range.attributes);
   for (std::size_t set = 0; set < split_.uvs.size(); ++set) {
     Points2 flipped = split_.uvs[set].middleRows(begin, end - begin);
     flipped.col(1) = 1.f - flipped.col(1).array();
@@ -133,7 +180,9 @@ WrittenRange MeshWriter::write_range(int begin, int end) {
   for (std::size_t set = 0; set < mesh.colors.size(); ++set)
     range.attributes[fmt::format("COLOR_{}", set)] =
         builder_.add_attribute(flat(rows_of(mesh.colors[set], split_, begin, end)), 4, color);
-  if (part_.skin >= 0 && !part_.skin_weights.empty()) write_influences(begin, end, range.attributes);
+  if ((part_.skin >= 0 || !part_.shown) && !part_.skin_weights.empty())
+    write_influences(begin, end, range.attributes);
+  write_custom(begin, end, range.attributes);
   write_targets(begin, end, range.targets);
   return range;
 }
@@ -150,7 +199,8 @@ void MeshWriter::write_influences(int begin, int end, Json& attributes) {
     tidy_influences(influences);
     most = std::max(most, influences.size());
   }
-  const bool narrow = character_.skins[part_.skin].joints.size() <= 256;
+  const std::size_t joint_count = part_.skin >= 0 ? character_.skins[part_.skin].joints.size() : 65536;
+  const bool narrow = joint_count <= 256;
   for (std::size_t set = 0; set < (most + 3) / 4; ++set) {
     std::vector<std::uint16_t> joints(rows.size() * 4, 0);
     std::vector<float> weights(rows.size() * 4, 0.f);
@@ -196,102 +246,42 @@ void MeshWriter::write_targets(int begin, int end, Json& targets) {
     }
 }
 
-Json MeshWriter::write_primitive(const FaceGroup& group, const WrittenRange& range, int first_row, int rows) {
+Json MeshWriter::write_faces(const FaceGroup& group) {
+  const WrittenRange& range = this->range({group.vertex_begin, group.vertex_end});
   std::vector<std::uint32_t> indices;
   for (int f = group.face_begin; f < group.face_end; ++f) {
     const int first = part_.mesh.faces.offset(f), size = static_cast<int>(part_.mesh.faces[f].size());
     for (int c = 2; c < size; ++c)
       for (const int corner : {0, c - 1, c})
-        indices.push_back(static_cast<std::uint32_t>(split_.corner_row[first + corner] - first_row));
+        indices.push_back(static_cast<std::uint32_t>(split_.corner_row[first + corner] - group.vertex_begin));
   }
   Json primitive = {{"attributes", range.attributes}};
   if (indices.empty())
     primitive["mode"] = 0;  // points: glTF has no triangles without corners
   else
-    primitive["indices"] = builder_.add_triangles(indices, static_cast<std::uint32_t>(rows));
+    primitive["indices"] =
+        builder_.add_indices(indices, static_cast<std::uint32_t>(group.vertex_end - group.vertex_begin));
   if (group.material >= 0) primitive["material"] = group.material;
   if (!range.targets.empty()) primitive["targets"] = range.targets;
   return primitive;
 }
 
-std::uint64_t bits_of(const Points2& coordinates, int row) {
-  std::uint64_t bits = 0;
-  if (row >= 0) std::memcpy(&bits, coordinates.data() + 2 * row, sizeof bits);
-  return bits;
+Json MeshWriter::write_loose(const LooseElements& loose) {
+  const std::pair<int, int> rows = ranges_.of(loose);
+  const WrittenRange& range = this->range(rows);
+  std::vector<std::uint32_t> indices;
+  for (const int vertex : loose.vertices) indices.push_back(static_cast<std::uint32_t>(vertex - rows.first));
+  Json primitive = {
+      {"attributes", range.attributes},
+      {"mode", loose.lines ? 1 : 0},
+      {"indices", builder_.add_indices(indices, static_cast<std::uint32_t>(rows.second - rows.first))}};
+  if (!loose.lines) primitive["attributes"].erase("TANGENT");  // points have no surface
+  if (loose.material >= 0) primitive["material"] = loose.material;
+  if (!range.targets.empty()) primitive["targets"] = range.targets;
+  return primitive;
 }
 
 }  // namespace
-
-SplitMesh split_seams(const Mesh& mesh) {
-  SplitMesh split;
-  split.vertex_count = static_cast<int>(mesh.vertex_count());
-  split.corner_row = mesh.faces.corners();
-  std::vector<std::size_t> cornered;  // UV sets that have a coordinate a corner
-  for (std::size_t set = 0; set < mesh.uvs.size(); ++set)
-    if (!mesh.uvs[set].corners.empty()) cornered.push_back(set);
-  // Corners of a vertex are told apart by the bits of their UVs, so that equal coordinates never split a
-  // vertex.
-  const auto bits = [&](std::size_t corner) {
-    std::vector<std::uint64_t> key{static_cast<std::uint64_t>(mesh.faces.corners()[corner])};
-    for (const std::size_t set : cornered)
-      key.push_back(bits_of(mesh.uvs[set].coordinates, mesh.uvs[set].corners[corner]));
-    return key;
-  };
-  std::vector<int> corner_of_row(split.vertex_count, -1);
-  std::map<std::vector<std::uint64_t>, int> copies;
-  for (std::size_t c = 0; c < split.corner_row.size() && !cornered.empty(); ++c) {
-    const int vertex = split.corner_row[c];
-    if (corner_of_row[vertex] < 0) corner_of_row[vertex] = static_cast<int>(c);
-    const std::vector<std::uint64_t> key = bits(c);
-    if (key == bits(corner_of_row[vertex])) continue;
-    const auto [copy, is_new] = copies.emplace(key, split.rows());
-    if (is_new) {
-      split.copy_of.push_back(vertex);
-      corner_of_row.push_back(static_cast<int>(c));
-    }
-    split.corner_row[c] = copy->second;
-  }
-  for (const UvSet& uv : mesh.uvs) {
-    Points2 rows = Points2::Zero(split.rows(), 2);
-    for (int r = 0; r < split.rows(); ++r) {
-      const int from = uv.corners.empty()      ? split.vertex_of(r)
-                       : corner_of_row[r] >= 0 ? uv.corners[corner_of_row[r]]
-                                               : -1;
-      if (from >= 0) rows.row(r) = uv.coordinates.row(from);
-    }
-    split.uvs.push_back(std::move(rows));
-  }
-  return split;
-}
-
-std::vector<FaceGroup> primitive_groups(const Mesh& mesh, const SplitMesh& split) {
-  FaceGroup whole;
-  whole.face_end = static_cast<int>(mesh.faces.size());
-  whole.vertex_end = split.rows();
-  if (mesh.groups.empty()) return {whole};
-  bool own_ranges = split.copy_of.empty();
-  for (const FaceGroup& group : mesh.groups)
-    for (int f = group.face_begin; own_ranges && f < group.face_end; ++f)
-      for (const int v : mesh.faces[f])
-        own_ranges = own_ranges && v >= group.vertex_begin && v < group.vertex_end;
-  std::vector<FaceGroup> primitives;
-  for (FaceGroup group : mesh.groups) {
-    if (group.face_begin == group.face_end) continue;
-    if (!own_ranges) group.vertex_begin = 0, group.vertex_end = split.rows();
-    FaceGroup* last = primitives.empty() ? nullptr : &primitives.back();
-    // Named groups are the artist's; the extension keeps them, and one primitive a material draws faster.
-    const bool merge = last && !(last->name.empty() && group.name.empty()) &&
-                       last->material == group.material && last->vertex_begin == group.vertex_begin &&
-                       last->vertex_end == group.vertex_end;
-    if (!merge) {
-      primitives.push_back(group);
-    } else {
-      last->face_end = group.face_end;
-      if (last->name.empty()) last->name = group.name;
-    }
-  }
-  return primitives.empty() ? std::vector<FaceGroup>{whole} : primitives;
-}
 
 Json write_meshes(const Character& character, GltfBuilder& builder) {
   Json meshes = Json::array();

@@ -77,8 +77,8 @@ const PointReader::Surface& PointReader::surface_of(int wanted) {
   std::vector<Eigen::Vector3d> positions;
   std::vector<Eigen::Vector3i> triangles;
   for (int p = 0; p < static_cast<int>(character_.parts.size()); ++p) {
-    if (wanted >= 0 && wanted != p) continue;
     const Part& part = character_.parts[p];
+    if (wanted >= 0 ? wanted != p : !part.shown) continue;
     const int first = static_cast<int>(positions.size());
     const Eigen::Matrix4d matrix =
         part.node >= 0 && part.skin < 0 ? matrices[part.node] : Eigen::Matrix4d::Identity();
