@@ -136,6 +136,34 @@ TEST(read_obj, reads_vertex_colours) {
   EXPECT_EQ(c.parts[0].mesh.colors[0].row(2), Eigen::RowVector4f(1, 1, 1, 1));
 }
 
+TEST(read_obj, decimals_of_any_length_become_the_nearest_float) {
+  const Folder folder;
+  std::string text;
+  std::vector<std::string> numbers;
+  std::uint32_t state = 1;
+  const auto random = [&](std::uint32_t below) {
+    state = state * 1664525u + 1013904223u;
+    return (state >> 8) % below;
+  };
+  for (int i = 0; i < 6000; ++i) {
+    std::string number = random(2) ? "-" : "";
+    for (std::uint32_t k = random(10); k > 0; --k) number += static_cast<char>('0' + random(10));
+    number += random(8) ? "." : "";
+    for (std::uint32_t k = random(14); k > 0; --k) number += static_cast<char>('0' + random(10));
+    if (number.find_first_of("0123456789") == number.npos) number += "7";
+    numbers.push_back(number);
+    text += (i % 3 == 0 ? "v " : " ") + number + (i % 3 == 2 ? "\n" : "");
+  }
+  // Halfway between two floats: to even, whatever the way.
+  for (const char* number : {"16777217", "16777219.", "0.500000029802322"}) {
+    numbers.push_back(number);
+    text += (numbers.size() % 3 == 1 ? "v " : " ") + numbers.back();
+  }
+  const Character c = read_obj(folder.write("numbers.obj", text + "\nf 1 2 3\n"));
+  for (std::size_t i = 0; i < numbers.size(); ++i)
+    ASSERT_EQ(c.parts[0].mesh.positions.data()[i], std::strtof(numbers[i].c_str(), nullptr)) << numbers[i];
+}
+
 TEST(write_obj, gives_back_what_was_read) {
   const Folder folder;
   const Character c = load(folder.write(

@@ -1,8 +1,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <charconv>
 #include <cmath>
+#include <cstdint>
 #include <cstring>
 #include <map>
 #include <optional>
@@ -14,8 +17,71 @@
 #include "mien/io/file.h"
 #include "mien/io/obj.h"
 
+// One pass over the bytes; everything that grows is reserved from the file's size. Most of the time goes into numbers: plain
+// decimals and indices take paths of their own, exact as from_chars is, eight digits at a time.
+
 namespace mien {
 namespace {
+
+/// Each is exact in a double too.
+constexpr std::array<std::uint64_t, 17> powers_of_ten = [] {
+  std::array<std::uint64_t, 17> powers{1};
+  for (std::size_t p = 1; p < powers.size(); ++p) powers[p] = 10 * powers[p - 1];
+  return powers;
+}();
+
+struct Digits {
+  std::uint64_t value = 0;
+  int count = 0;
+};
+
+/// The digits that `at` begins with, eight at most; eight bytes must be there. All eight at once: each byte's digit, then pairs,
+/// fours and the whole (Lemire 2018).
+Digits leading_digits(const char* at) {
+  static_assert(std::endian::native == std::endian::little);
+  std::uint64_t bytes;
+  std::memcpy(&bytes, at, sizeof bytes);
+  const std::uint64_t digits = bytes ^ 0x3030303030303030;
+  const std::uint64_t others = ((digits + 0x7676767676767676) | digits) & 0x8080808080808080;
+  const int count = others ? std::countr_zero(others) / 8 : 8;
+  if (count == 0) return {};
+  std::uint64_t pairs = digits << (64 - 8 * count);  // zeros in front
+  pairs = pairs * 10 + (pairs >> 8);
+  constexpr std::uint64_t every_fourth = 0x000000FF000000FF;
+  const std::uint64_t value = ((pairs & every_fourth) * (100 + (1000000ULL << 32)) +
+                               ((pairs >> 16) & every_fourth) * (1 + (10000ULL << 32))) >>
+                              32;
+  return {value, count};
+}
+
+/// Reads digits[.digits] of at most 15 digits, behind which a blank or a line's end must be: the float nearest to it, and where
+/// it ends; nullptr for everything else. Digits and power are exact in double, so their quotient is the nearest double; only one
+/// next to the middle of two floats could round to the wrong one of them, and that one is left to the slow path.
+const char* read_plain_decimal(const char* at, const char* end, float& value) {
+  if (end - at < 32) return nullptr;
+  const bool negative = *at == '-';
+  at += negative;
+  Digits number = leading_digits(at);
+  at += number.count;
+  int after = 0;
+  if (*at == '.') {
+    for (int turn = 0; turn < 2; ++turn) {
+      const Digits more = leading_digits(at + 1 + after);
+      number.value = number.value * powers_of_ten[static_cast<std::size_t>(more.count)] + more.value;
+      number.count += more.count;
+      after += more.count;
+      if (more.count < 8) break;
+    }
+    at += 1 + after;
+  }
+  if (number.count == 0 || number.count > 15 || static_cast<unsigned char>(*at) > ' ') return nullptr;
+  const double exact =
+      static_cast<double>(number.value) / static_cast<double>(powers_of_ten[static_cast<std::size_t>(after)]);
+  const std::uint64_t beyond_float = std::bit_cast<std::uint64_t>(exact) & 0x1FFFFFFF;
+  if (beyond_float - 0x0FFFFFFF <= 2) return nullptr;
+  value = static_cast<float>(negative ? -exact : exact);
+  return at;
+}
 
 /// One face corner as the file numbers it, from 0; -1: not given.
 struct Corner {
@@ -84,6 +150,10 @@ void ObjReader::skip_blanks() {
 }
 
 void ObjReader::skip_line() {
+  if (at_ < end_ && *at_ == '\n') {
+    ++at_, ++line_;
+    return;
+  }
   const void* newline = std::memchr(at_, '\n', static_cast<std::size_t>(end_ - at_));
   const char* stop = newline ? static_cast<const char*>(newline) : end_;
   const char* last = stop > at_ && stop[-1] == '\r' ? stop - 1 : stop;
@@ -105,8 +175,12 @@ std::string_view ObjReader::rest_of_line() {
 std::optional<float> ObjReader::next_number() {
   skip_blanks();
   if (at_line_end()) return std::nullopt;
-  if (*at_ == '+') ++at_;
   float value = 0;
+  if (const char* after = read_plain_decimal(at_, end_, value)) {
+    at_ = after;
+    return value;
+  }
+  if (*at_ == '+') ++at_;
   const auto [after, code] = std::from_chars(at_, end_, value);
   if (code == std::errc::result_out_of_range) {
     if (!is_tiny(std::string_view(at_, static_cast<std::size_t>(after - at_))))
@@ -147,6 +221,15 @@ void ObjReader::read_vertex() {
 
 /// Numbers from 1, or from -1 back; what lies ahead in the file is checked at its end.
 int ObjReader::read_index(std::size_t count, const char* kind, int& furthest, int& furthest_line) {
+  if (end_ - at_ >= 8) {
+    const Digits digits = leading_digits(at_);
+    if (digits.value > 0 && digits.count < 8) {
+      at_ += digits.count;
+      const int plain = static_cast<int>(digits.value) - 1;
+      if (plain > furthest) furthest = plain, furthest_line = line_;
+      return plain;
+    }
+  }
   constexpr long long limit = 2'000'000'000;
   const bool negative = at_ < end_ && *at_ == '-';
   if (at_ < end_ && (*at_ == '+' || *at_ == '-')) ++at_;
