@@ -24,18 +24,9 @@ constexpr double border = 1e-9;
 
 constexpr const char* axis_names[3] = {" along s", " along t", " along u"};
 
-/// Clamped and uniform over [0, 1].
-std::vector<double> knots_of(int count, int degree) {
-  std::vector<double> knots(static_cast<std::size_t>(count + degree + 1), 0.0);
-  const int spans = count - degree;
-  for (int k = 0; k < static_cast<int>(knots.size()); ++k)
-    knots[static_cast<std::size_t>(k)] = std::clamp(static_cast<double>(k - degree) / spans, 0.0, 1.0);
-  return knots;
-}
-
 /// One axis, prepared.
 struct Axis {
-  Axis(int count, int degree) : count(count), degree(degree), knots(knots_of(count, degree)) {}
+  Axis(int count, int degree) : count(count), degree(degree), knots(detail::clamped_knots(count, degree)) {}
   Eigen::VectorXd basis(double u) const {
     const double inside = std::clamp(u, 0.0, 1.0);
     Eigen::VectorXd values = detail::spline_basis(degree, count, knots, inside);
@@ -201,7 +192,7 @@ PointsD lattice_controls(const Lattice& lattice, const Box& box) {
   // Control points at the means of their knots: a spline of any degree is linear then.
   std::array<std::vector<double>, 3> places;
   for (std::size_t a = 0; a < 3; ++a) {
-    const std::vector<double> knots = knots_of(lattice.count[a], lattice.degree[a]);
+    const std::vector<double> knots = detail::clamped_knots(lattice.count[a], lattice.degree[a]);
     for (int c = 0; c < lattice.count[a]; ++c)
       places[a].push_back(
           std::accumulate(knots.begin() + c + 1, knots.begin() + c + 1 + lattice.degree[a], 0.0) /

@@ -38,6 +38,13 @@ std::string fault_of_weights(const std::string& points, std::size_t count,
   return {};
 }
 
+std::vector<double> clamped_knots(int count, int degree) {
+  std::vector<double> knots;
+  for (int k = 0; k <= count + degree; ++k)
+    knots.push_back(std::clamp(static_cast<double>(k - degree) / (count - degree), 0.0, 1.0));
+  return knots;
+}
+
 Eigen::VectorXd spline_basis(int degree, int count, const std::vector<double>& knots, double u) {
   const auto knot = [&](int k) { return knots[static_cast<std::size_t>(k)]; };
   u = std::clamp(u, knot(degree), knot(count));

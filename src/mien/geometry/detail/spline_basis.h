@@ -17,6 +17,9 @@ std::string fault_of_knots(const std::string& points, const std::string& along, 
 std::string fault_of_weights(const std::string& points, std::size_t count,
                              const std::vector<double>& weights);
 
+/// Knots over [0, 1] with equal spans whose first and last control point are the ends. `count` is above `degree`.
+std::vector<double> clamped_knots(int count, int degree);
+
 /// The basis functions at `u`, taken at the domain's border outside of it.
 ///   returns  #count, degree + 1 of them not zero
 ///   method   Piegl and Tiller 1997, A2.1 and A2.2
