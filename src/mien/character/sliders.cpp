@@ -175,7 +175,7 @@ SliderValues apply_expression(const Character& character, const Expression& expr
 }
 
 Pose pose_of(const Character& character, const RigPose& rig) {
-  return {shape_weights(character, rig.sliders), rig.locals, {}};
+  return {shape_weights(character, rig.sliders), rig.locals, {}, rig.wires, rig.objects};
 }
 
 RigPose rest_rig_pose(const Character& character) {

@@ -5,7 +5,9 @@
 #include <limits>
 #include <unordered_set>
 
+#include "mien/character/detail/skin_problem.h"
 #include "mien/character/detail/validate_carried.h"
+#include "mien/character/object_problems.h"
 
 namespace mien {
 namespace {
@@ -186,31 +188,15 @@ void Validator::check_groups(const Mesh& mesh, const std::string& place) {
 }
 
 void Validator::check_skin_weights(const Part& part, const std::string& place) {
-  const SkinWeights& skin = part.skin_weights;
   const bool of_hidden =
       !part.shown && part.skin < 0;  // whatever skin its joints belong to, files name 2^16 at most
-  if (skin.empty() || (part.skin < 0 && !of_hidden) || part.skin >= static_cast<int>(character_.skins.size()))
+  if (part.skin_weights.empty() || (part.skin < 0 && !of_hidden) ||
+      part.skin >= static_cast<int>(character_.skins.size()))
     return;
-  if (skin.offsets.size() != part.mesh.vertex_count() + 1 || skin.offsets.front() != 0 ||
-      static_cast<std::size_t>(skin.offsets.back()) != skin.joints.size() ||
-      skin.weights.size() != skin.joints.size() || !std::is_sorted(skin.offsets.begin(), skin.offsets.end()))
-    return add(place, "has skin weights whose counts do not fit together", "give each vertex its influences");
-  const std::size_t joint_count = of_hidden ? 65536 : character_.skins[part.skin].joints.size();
-  for (std::size_t v = 0; v < part.mesh.vertex_count(); ++v) {
-    double sum = 0;
-    const auto here = [&] { return place + ": vertex " + text_of(v); };
-    for (int i = skin.offsets[v]; i < skin.offsets[v + 1]; ++i) {
-      if (skin.joints[i] < 0 || skin.joints[i] >= static_cast<int>(joint_count)) {
-        in_range(skin.joints[i], 0, joint_count, here(), "joint");
-        return;
-      }
-      if (!(skin.weights[i] >= 0) || !std::isfinite(skin.weights[i]))
-        return add(here(), "has a skin weight that is negative or not finite", "give weights in [0, 1]");
-      sum += skin.weights[i];
-    }
-    if (std::abs(sum - 1) > 1e-3)
-      return add(here(), "has skin weights that sum to " + std::to_string(sum), "they sum to 1");
-  }
+  if (auto problem = detail::skin_problem(part.skin_weights, part.mesh.vertex_count(),
+                                          of_hidden ? 65536 : character_.skins[part.skin].joints.size(),
+                                          place, "vertex"))
+    problems_.push_back(std::move(*problem));
 }
 
 void Validator::check_mesh(const Part& part, const std::string& place) {
@@ -363,6 +349,13 @@ void Validator::check_channel_target(const Channel& channel, const std::string& 
     check_wire_target(channel, place);
     return;
   }
+  if (channel.property == Channel::Property::object_control) {
+    if (in_range(channel.object, 0, character_.objects.size(), place, "object"))
+      in_range(channel.control, 0,
+               static_cast<std::size_t>(character_.objects[channel.object].controls.rows()), place,
+               "control point");
+    return;
+  }
   if (channel.property == Channel::Property::slider) {
     in_range(channel.slider, 0, character_.sliders.size(), place, "slider");
     return;
@@ -448,6 +441,7 @@ std::vector<Problem> Validator::run() {
   }
   check_shapes();
   check_wires();
+  for (Problem& problem : object_problems(character_)) problems_.push_back(std::move(problem));
   check_sliders();
   check_correctives();
   check_expressions();
