@@ -6,6 +6,7 @@
 #include <string>
 
 #include "mien/core/error.h"
+#include "mien/deform/influence.h"
 #include "mien/deform/shapes.h"
 #include "mien/deform/skin.h"
 #include "mien/deform/wires.h"
@@ -34,6 +35,12 @@ PointsD to_model_space(const Character& character, const Part& part, const Point
   return part.node >= 0 ? carry(positions, model[part.node]) : positions;
 }
 
+/// Where the nodes rest: constraints may act there too.
+std::vector<Eigen::Matrix4d> rest_matrices(const Character& character) {
+  return character.constraints.empty() ? std::vector<Eigen::Matrix4d>()
+                                       : posed_matrices(character, rest_pose(character));
+}
+
 }  // namespace
 
 std::vector<Points> evaluate(const Character& character, const Pose& pose) {
@@ -41,6 +48,9 @@ std::vector<Points> evaluate(const Character& character, const Pose& pose) {
   const std::vector<Eigen::Matrix4d> model = posed_matrices(character, pose);
   std::optional<WireField> wires;
   if (!pose.wires.empty()) wires.emplace(character, character.wires);
+  std::optional<InfluenceField> objects;
+  if (!character.objects.empty() || !pose.objects.empty())
+    objects.emplace(character, rest_matrices(character));
   ShapeWeights weights(character.shapes.size());
   std::vector<Points> posed;
   posed.reserve(character.parts.size());
@@ -49,6 +59,7 @@ std::vector<Points> evaluate(const Character& character, const Pose& pose) {
     detail::weights_on_part(pose, part, weights.values);
     PointsD shaped = add_shapes(character, part, weights);
     if (wires) wires->add(part, pose.wires, shaped);
+    if (objects) objects->add(part, objects->pose(model, weights, pose.objects), shaped);
     posed.push_back(to_model_space(character, character.parts[p], shaped, model).cast<float>());
   }
   return posed;

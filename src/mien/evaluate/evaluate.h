@@ -1,5 +1,5 @@
 #pragma once
-/// Pose in, surface out: shapes and wires, then skinning.
+/// Pose in, surface out: shapes, wires and influence objects, then skinning.
 
 #include <vector>
 
@@ -14,8 +14,8 @@ namespace mien {
 ///   finite, a part
 ///            that names a skin, joint or node out of range
 ///   cost     linear in moved vertices x active shapes, plus #V x influences
-/// Positions are neutral + sum of shape weight x delta + what the pose's wires add, then skinned by `joint matrix x inverse bind` as the part's
-/// skin says; a part without a skin is carried by its node.
+/// Neutral + sum of shape weight x delta + what wires and influence objects add (influence.h), then skinned by `joint matrix x inverse
+/// bind` as the part's skin says; a part without a skin is carried by its node.
 std::vector<Points> evaluate(const Character& character, const Pose& pose);
 
 /// The character's pose at `seconds` of `clip`; what the clip does not animate is at rest. Times outside the

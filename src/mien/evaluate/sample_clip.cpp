@@ -32,9 +32,18 @@ Target target_of(const Character& character, const Channel& channel) {
     case Channel::Property::wire_scale:
     case Channel::Property::wire_turn:
       return {"wire ", channel.wire, character.wires.size()};
+    case Channel::Property::object_control:
+      return {"object ", channel.object, character.objects.size()};
     default:
       return {"node ", channel.node, character.nodes.size()};
   }
+}
+
+void check_control(const Channel& channel, const std::string& owner, Eigen::Index rows,
+                   const std::string& place) {
+  if (channel.control < 0 || channel.control >= rows)
+    throw invalid_input(place, "animates control point " + std::to_string(channel.control) + " of " + owner,
+                        "one from 0 to " + std::to_string(rows - 1));
 }
 
 void check_channel(const Character& character, const Clip& clip, std::size_t index) {
@@ -49,19 +58,31 @@ void check_channel(const Character& character, const Clip& clip, std::size_t ind
   if (target < 0 || static_cast<std::size_t>(target) >= count)
     throw invalid_input(place_of(clip, index), std::string("animates ") + kind + std::to_string(target),
                         "one from 0 to " + std::to_string(static_cast<int>(count) - 1));
+  if (channel.property == Channel::Property::object_control) {
+    const InfluenceObject& object = character.objects[channel.object];
+    check_control(channel, "object " + object.name, object.controls.rows(), place_of(clip, index));
+  }
   if (channel.property != Channel::Property::wire_control && channel.property != Channel::Property::wire_turn)
     return;
   const Wire& wire = character.wires[channel.wire];
-  const int rows =
-      channel.property == Channel::Property::wire_control ? wire.curve.control_count() : wire.turn_controls;
-  if (channel.control < 0 || channel.control >= rows)
-    throw invalid_input(place_of(clip, index),
-                        "animates control point " + std::to_string(channel.control) + " of wire " + wire.name,
-                        "one from 0 to " + std::to_string(rows - 1));
+  check_control(
+      channel, "wire " + wire.name,
+      channel.property == Channel::Property::wire_control ? wire.curve.control_count() : wire.turn_controls,
+      place_of(clip, index));
+}
+
+/// Adds what a channel does to an object to the pose.
+void move_object(const Character& character, const Channel& channel, const Value& value, RigPose& pose) {
+  auto move = std::find_if(pose.objects.begin(), pose.objects.end(),
+                           [&](const ObjectMove& m) { return m.object == channel.object; });
+  if (move == pose.objects.end())
+    move = pose.objects.insert(
+        move, {channel.object, PointsD::Zero(character.objects[channel.object].controls.rows(), 3)});
+  move->controls.row(channel.control) = value.head<3>().transpose();
 }
 
 /// Adds what a channel does to a wire to the pose.
-void move_wire(const Character& character, const Channel& channel, const Value& value, Pose& pose) {
+void move_wire(const Character& character, const Channel& channel, const Value& value, RigPose& pose) {
   const Wire& wire = character.wires[channel.wire];
   auto move = std::find_if(pose.wires.begin(), pose.wires.end(),
                            [&](const WireMove& m) { return m.wire == channel.wire; });
@@ -135,13 +156,17 @@ std::vector<Value> sample_channels(const Character& character, const Clip& clip,
   return values;
 }
 
-/// Sliders and nodes; shape weights aside.
+/// Sliders, nodes, wires and objects; shape weights aside.
 RigPose rig_of(const Character& character, const Clip& clip, const std::vector<Value>& values) {
   RigPose rig = rest_rig_pose(character);
   for (std::size_t c = 0; c < values.size(); ++c) {
     const Channel& channel = clip.channels[c];
     if (channel.property == Channel::Property::slider)
       rig.sliders.values[channel.slider] = values[c][0];
+    else if (channel.property == Channel::Property::object_control)
+      move_object(character, channel, values[c], rig);
+    else if (channel.moves_wire())
+      move_wire(character, channel, values[c], rig);
     else
       apply(channel, values[c], rig.locals);
   }
@@ -155,7 +180,6 @@ Pose sample_clip(const Character& character, const Clip& clip, double seconds) {
   Pose pose = pose_of(character, rig_of(character, clip, values));
   for (std::size_t c = 0; c < values.size(); ++c) {
     const Channel& channel = clip.channels[c];
-    if (channel.moves_wire()) move_wire(character, channel, values[c], pose);
     if (channel.property != Channel::Property::shape_weight) continue;
     if (channel.part < 0)
       pose.shape_weights.values[channel.shape] = values[c][0];

@@ -199,6 +199,11 @@ Clip copy_by_name(const Character& from, const Clip& clip, const Character& to) 
     } else if (channel.property == Channel::Property::slider) {
       channel.slider = find_slider(to, from.sliders[static_cast<std::size_t>(channel.slider)].name);
       if (channel.slider >= 0) copy.channels.push_back(std::move(channel));
+    } else if (channel.property == Channel::Property::object_control) {
+      channel.object = find_object(to, from.objects[static_cast<std::size_t>(channel.object)].name);
+      if (channel.object >= 0 &&
+          channel.control < to.objects[static_cast<std::size_t>(channel.object)].controls.rows())
+        copy.channels.push_back(std::move(channel));
     } else {
       channel.node = node_named(to, from.nodes[static_cast<std::size_t>(channel.node)].name);
       if (channel.node >= 0) copy.channels.push_back(std::move(channel));
