@@ -8,7 +8,6 @@
 #include "mien/deform/bind_wires.h"
 #include "mien/evaluate/evaluate.h"
 #include "mien/extract/draw_wires.h"
-#include "mien/extract/improve_wires.h"
 
 namespace mien {
 namespace {
@@ -124,19 +123,37 @@ TEST(ExtractWires, ScaleAndRigidMotionChangeNothing) {
   EXPECT_NEAR(error(moved), error(face), 1e-3);
 }
 
-TEST(ImproveWires, LeavesLessThanBefore) {
+TEST(ExtractWires, KeepsAResidualOnAsManyVerticesAsAllowed) {
   const Character& face = human();
-  ImproveOptions options;
-  options.sweeps = 1;
-  options.fixed = {"chin"};
-  const std::vector<Wire> wires = human_wires();
-  const ImproveResult improved = improve_wires(face, wires, options);
-  EXPECT_LE(improved.after, improved.before);
-  for (std::size_t w = 0; w < wires.size(); ++w)
-    if (wires[w].name == "chin") {
-      EXPECT_EQ(improved.wires[w].ranges, wires[w].ranges);
+  ExtractOptions options;
+  options.residual = 0;
+  options.residual_vertices = 0.02;
+  const ExtractResult result = extract_wires(face, human_wires(), options);
+  std::size_t kept = 0;
+  for (const WireFit& fit : result.shapes)
+    for (const PartDelta& delta : fit.residual) kept += delta.vertices.size();
+  const double most = 0.02 * static_cast<double>(result.skin_vertices * result.shapes.size());
+  EXPECT_LE(static_cast<double>(kept), most);
+  EXPECT_GT(static_cast<double>(kept), 0.95 * most);
+  EXPECT_LT(result.kept_error, 0.9 * result.error);
+  options.residual_vertices = 1.5;
+  EXPECT_EQ(text_of_error([&] { extract_wires(face, human_wires(), options); }),
+            "residual vertices: are 1.500000; a share of the vertices, 0 to 1");
+}
+
+TEST(ExtractWires, ManyShapesAtOnceAreSolvedAsOneByOne) {
+  const Character& face = human();
+  const WireSolver solver(face, human_wires());
+  const std::vector<std::vector<WireMove>> all = solver.solve(face.shapes);
+  ASSERT_EQ(all.size(), face.shapes.size());
+  for (std::size_t s = 0; s < face.shapes.size(); s += 7) {
+    const std::vector<WireMove> one = solver.solve(face.shapes[s]);
+    ASSERT_EQ(one.size(), all[s].size());
+    for (std::size_t w = 0; w < one.size(); ++w) {
+      EXPECT_TRUE(one[w].controls.isApprox(all[s][w].controls, 1e-9));
+      EXPECT_TRUE(one[w].turns.isApprox(all[s][w].turns, 1e-9));
     }
-  EXPECT_EQ(improved.wires[0].ranges, improved.wires[1].ranges);  // brow_R, brow_L
+  }
 }
 
 }  // namespace

@@ -227,6 +227,22 @@ SurfacePoint WireBinder::between(const SurfacePoint& from, const SurfacePoint& t
   return point;
 }
 
+SurfacePoint WireBinder::moved(const SurfacePoint& from, const Eigen::Vector3d& offset) const {
+  const Surface& surface = surfaces_->of(from.part);
+  const int vertex = vertex_of(surfaces_->character, "moved", from);
+  const Eigen::Vector3d goal = surface.positions.row(vertex).transpose() + offset;
+  SurfacePoint point;
+  point.part = from.part;
+  point.vertex = surface.weld.representative[surface.geodesics.walk_towards(surface.weld.of[vertex], goal)];
+  return point;
+}
+
+WireBinder::Stand WireBinder::stand(const SurfacePoint& point) const {
+  const Surface& surface = surfaces_->of(point.part);
+  const int vertex = vertex_of(surfaces_->character, "moved", point);
+  return {surface.positions.row(vertex).transpose(), surface.geodesics.normal_at(surface.weld.of[vertex])};
+}
+
 std::vector<WireDistances> WireBinder::measure(const Wire& wire, double max_distance) const {
   require_valid(wire.curve);
   std::vector<WireDistances> result;

@@ -40,6 +40,15 @@ class WireBinder {
   /// The vertex at a `share` of that way, 0 to 1.
   SurfacePoint between(const SurfacePoint& from, const SurfacePoint& to, double share) const;
 
+  /// The vertex that a walk along the surface from `from` towards its place + `offset` ends at.
+  SurfacePoint moved(const SurfacePoint& from, const Eigen::Vector3d& offset) const;
+
+  /// Where the vertex closest to a point is, and the surface's unit normal there; model space, neutral.
+  struct Stand {
+    Eigen::Vector3d position, normal;
+  };
+  Stand stand(const SurfacePoint& point) const;
+
   /// The wire's bindings by its ranges and falloff.
   ///   throws  as above; a range that is not positive, a falloff that is not ascending in x or outside of [0, 1]; ranges that
   ///           reach no vertex

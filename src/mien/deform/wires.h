@@ -64,9 +64,6 @@ PointsD bind_positions(const Character& character, int part);
 /// WX's falloff (x^2 - 1)^2 within the range, 0 beyond, or the wire's drawn one.
 double falloff_at(const Wire& wire, double x);
 
-/// The turns' basis at a parameter of the wire's curve: clamped, over the curve's domain.
-SplineBasis turn_basis_at(const Wire& wire, double parameter);
-
 /// The range at a parameter of the wire's curve.
 double range_at(const Wire& wire, double parameter);
 

@@ -7,6 +7,7 @@
 #include "mien/character/landmark_points.h"
 #include "mien/core/error.h"
 #include "mien/deform/bind_wires.h"
+#include "mien/extract/detail/draw_wire.h"
 #include "mien/geometry/bspline.h"
 
 namespace mien {
@@ -54,7 +55,9 @@ PointsD way_through(const WireBinder& binder, const WireSketch& sketch) {
   return smooth_way(way, picked);
 }
 
-Wire draw(const WireBinder& binder, const WireSketch& sketch) {
+}  // namespace
+
+Wire detail::draw_curve(const WireBinder& binder, const WireSketch& sketch) {
   const std::string place = "wire " + sketch.name;
   if (sketch.points.size() < 4)
     throw invalid_input(place, "has " + std::to_string(sketch.points.size()) + " points",
@@ -77,9 +80,16 @@ Wire draw(const WireBinder& binder, const WireSketch& sketch) {
   wire.ranges = {sketch.range > 0 ? sketch.range : length_of(way)};
   wire.turn_controls = sketch.turn_controls;
   wire.geodesic = sketch.geodesic;
+  return wire;
+}
+
+Wire detail::draw_wire(const WireBinder& binder, const WireSketch& sketch) {
+  Wire wire = draw_curve(binder, sketch);
   wire.bindings = binder.bind(wire);
   return wire;
 }
+
+namespace {
 
 struct Preset {
   const char *name, *feature;
@@ -148,7 +158,7 @@ std::vector<Wire> draw_wires(const Character& character, std::span<const WireSke
   for (const WireSketch& sketch : sketches) {
     if (!names.insert(sketch.name).second)
       throw invalid_input("wire " + sketch.name, "is there twice", "names of their own");
-    wires.push_back(draw(binder, sketch));
+    wires.push_back(detail::draw_wire(binder, sketch));
   }
   return wires;
 }

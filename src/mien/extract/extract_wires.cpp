@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <functional>
 #include <set>
 
 #include "mien/core/error.h"
@@ -16,6 +17,9 @@ namespace mien {
 namespace {
 
 using Clock = std::chrono::steady_clock;
+
+/// Shapes that are solved as one product: the factors are read once for all of them.
+constexpr std::size_t solved_together = 16;
 
 double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
@@ -59,19 +63,19 @@ struct WireSolver::State {
       controls.push_back(wire.curve.control_count());
       turns.push_back(wire.turn_controls);
     }
-    const auto model = model_matrices(character);
+    to_model = detail::vectors_to_model(character);
     for (std::size_t p = 0; p < character.parts.size(); ++p) {
       const Part& part = character.parts[p];
       vertex_counts.push_back(static_cast<Eigen::Index>(part.mesh.vertex_count()));
-      to_model.push_back(part.skin >= 0 || part.node < 0
-                             ? Eigen::Matrix3d(Eigen::Matrix3d::Identity())
-                             : Eigen::Matrix3d(model[part.node].topLeftCorner<3, 3>()));
       rows.emplace_back(part.mesh.vertex_count(), -1);
       const std::vector<int>& reached = field.parts()[p].vertices;
       for (std::size_t row = 0; row < reached.size(); ++row)
         rows.back()[reached[row]] = static_cast<int>(row);
     }
   }
+
+  bool add(const Shape& shape, Eigen::Index expression, detail::WireVectors& right) const;
+  std::vector<WireMove> moves_of(const detail::WireVectors& found, Eigen::Index expression) const;
 
   WireField field;
   detail::WireSystem system;
@@ -90,37 +94,63 @@ WireSolver::~WireSolver() = default;
 WireSolver::WireSolver(WireSolver&&) noexcept = default;
 WireSolver& WireSolver::operator=(WireSolver&&) noexcept = default;
 
-std::vector<WireMove> WireSolver::solve(const Shape& shape) const {
-  detail::WireVector right = state_->system.zero();
+/// Adds a shape's right-hand side; false: it moves no vertex in reach.
+bool WireSolver::State::add(const Shape& shape, Eigen::Index expression, detail::WireVectors& right) const {
   bool moved = false;
   for (const PartDelta& delta : shape.parts) {
-    if (delta.part < 0 || delta.part >= static_cast<int>(state_->rows.size()))
+    if (delta.part < 0 || delta.part >= static_cast<int>(rows.size()))
       throw invalid_input("shape " + shape.name, "moves part " + std::to_string(delta.part),
                           "a part that exists");
+    std::vector<int> reached;
+    PointsD displacements(static_cast<Eigen::Index>(delta.vertices.size()), 3);
     for (std::size_t i = 0; i < delta.vertices.size(); ++i) {
-      const int row = state_->rows[delta.part][delta.vertices[i]];
+      const int row = rows[delta.part][delta.vertices[i]];
       if (row < 0) continue;
-      const Eigen::Vector3d displacement =
-          delta.deltas.row(static_cast<Eigen::Index>(i)).transpose().cast<double>();
-      moved = moved || displacement.squaredNorm() > 0;
-      state_->system.add(delta.part, row, state_->to_model[delta.part] * displacement, right);
+      displacements.row(static_cast<Eigen::Index>(reached.size())) =
+          delta.deltas.row(static_cast<Eigen::Index>(i)).cast<double>() * to_model[delta.part].transpose();
+      reached.push_back(row);
     }
+    const auto used = displacements.topRows(static_cast<Eigen::Index>(reached.size()));
+    if (used.isZero(0)) continue;
+    moved = true;
+    system.add(delta.part, reached, displacements, expression, right);
   }
+  return moved;
+}
+
+std::vector<WireMove> WireSolver::State::moves_of(const detail::WireVectors& found,
+                                                  Eigen::Index expression) const {
   std::vector<WireMove> moves;
-  if (!moved) return moves;
-  const detail::WireVector found = state_->system.solve(right);
-  const detail::WireColumns& columns = state_->system.columns();
-  for (std::size_t w = 0; w < state_->controls.size(); ++w) {
+  const detail::WireColumns& columns = system.columns();
+  for (std::size_t w = 0; w < controls.size(); ++w) {
     WireMove move;
     move.wire = static_cast<int>(w);
-    move.controls = found.controls.middleRows(columns.controls[w], state_->controls[w]);
+    move.controls = found.controls.block(columns.controls[w], 3 * expression, controls[w], 3);
     const int sigma = columns.unknowns[columns.coupled[w]];
-    move.scale = found.coupled[sigma];
-    move.turns.resize(state_->turns[w], 3);
-    for (int t = 0; t < state_->turns[w]; ++t)
-      move.turns.row(t) = found.coupled.segment<3>(sigma + 1 + 3 * t).transpose();
+    move.scale = found.coupled(sigma, expression);
+    move.turns.resize(turns[w], 3);
+    for (int t = 0; t < turns[w]; ++t)
+      move.turns.row(t) = found.coupled.col(expression).segment<3>(sigma + 1 + 3 * t).transpose();
     moves.push_back(std::move(move));
   }
+  return moves;
+}
+
+std::vector<WireMove> WireSolver::solve(const Shape& shape) const {
+  return std::move(solve(std::span(&shape, 1)).front());
+}
+
+std::vector<std::vector<WireMove>> WireSolver::solve(std::span<const Shape> shapes) const {
+  std::vector<std::vector<WireMove>> moves(shapes.size());
+  parallel_for(shapes.size(), solved_together, [&](std::size_t begin, std::size_t end) {
+    detail::WireVectors right = state_->system.zero(static_cast<Eigen::Index>(end - begin));
+    std::vector<char> moved;
+    for (std::size_t s = begin; s < end; ++s)
+      moved.push_back(state_->add(shapes[s], static_cast<Eigen::Index>(s - begin), right));
+    const detail::WireVectors found = state_->system.solve(right);
+    for (std::size_t s = begin; s < end; ++s)
+      if (moved[s - begin]) moves[s] = state_->moves_of(found, static_cast<Eigen::Index>(s - begin));
+  });
   return moves;
 }
 
@@ -144,63 +174,112 @@ std::vector<PartDelta> WireSolver::apply(std::span<const WireMove> moves) const 
 
 namespace {
 
+/// 0 up to the threshold, 1 from twice the threshold on.
+double kept_share(double value, double threshold) {
+  if (!(value > threshold)) return 0;
+  return threshold > 0 ? std::min(1.0, 2 * (value - threshold) / value) : 1;
+}
+
 /// Takes one shape apart into what wires rebuild, what is kept beside them and what is lost.
 class Fitter {
  public:
-  Fitter(const Character& character, const WireSolver& solver, const detail::Pieces& pieces, double threshold)
-      : character_(character), solver_(solver), pieces_(pieces), threshold_(threshold) {}
+  Fitter(const Character& character, const WireSolver& solver, const detail::Pieces& pieces,
+         const ExtractOptions& options)
+      : character_(character),
+        solver_(solver),
+        pieces_(pieces),
+        weights_(options.solver.vertex_weights),
+        threshold_(options.residual * pieces.box()) {}
 
-  /// Sums of squares by feature go to `features`.
-  WireFit fit(const Shape& shape, std::vector<FeatureError>& features) const;
+  /// All but the residual. Sums of squares by feature go to `features`, what every vertex that exceeds the threshold counts to
+  /// `counts`.
+  WireFit fit(const Shape& shape, std::vector<WireMove> moves, std::vector<FeatureError>& features,
+              std::vector<float>& counts) const;
+
+  /// What is kept of the shape: nothing of what counts for `least` or less.
+  void keep(const Shape& shape, double least, WireFit& fit) const;
 
  private:
-  void fit_part(const Shape& shape, int part, WireFit& fit, std::vector<FeatureError>& features) const;
+  Points left_over(const Shape& shape, int part, const WireFit& fit) const;
+  /// What an error counts for where it is, as a float: as it is sorted.
+  float count_of(int part, Eigen::Index vertex, double error) const {
+    const bool plain = weights_.empty() || weights_[part].size() == 0;
+    return static_cast<float>(plain ? error : error * std::sqrt(weights_[part][vertex]));
+  }
   const Character& character_;
   const WireSolver& solver_;
   const detail::Pieces& pieces_;
+  const std::vector<Eigen::VectorXf>& weights_;
   double threshold_;
 };
 
-WireFit Fitter::fit(const Shape& shape, std::vector<FeatureError>& features) const {
-  WireFit result;
-  result.shape = shape.name;
-  result.moves = solver_.solve(shape);
-  result.rebuilt = solver_.apply(result.moves);
-  for (std::size_t p = 0; p < character_.parts.size(); ++p)
-    if (pieces_.has_skin(static_cast<int>(p))) fit_part(shape, static_cast<int>(p), result, features);
-  result.displacement = std::sqrt(result.displacement);
-  result.error = std::sqrt(result.error);
-  result.kept_error = std::sqrt(result.kept_error);
-  return result;
-}
-
-void Fitter::fit_part(const Shape& shape, int part, WireFit& fit, std::vector<FeatureError>& features) const {
-  const Points wanted = detail::dense_delta(character_, shape, part);
-  Points left = wanted, kept = Points::Zero(wanted.rows(), 3);
+Points Fitter::left_over(const Shape& shape, int part, const WireFit& fit) const {
+  Points left = detail::dense_delta(character_, shape, part);
   for (const PartDelta& delta : fit.rebuilt)
     if (delta.part == part)
       for (std::size_t i = 0; i < delta.vertices.size(); ++i)
         left.row(delta.vertices[i]) -= delta.deltas.row(static_cast<Eigen::Index>(i));
-  for (Eigen::Index v = 0; v < wanted.rows(); ++v) {
-    if (!pieces_.is_skin(part, static_cast<int>(v))) continue;
-    const double scale = pieces_.unit(part), error = scale * left.row(v).cast<double>().norm(),
-                 displacement = scale * wanted.row(v).cast<double>().norm();
-    fit.displacement += displacement * displacement;
-    fit.error += error * error;
-    FeatureError& feature = features[pieces_.feature(part, static_cast<int>(v))];
-    feature.displacement += displacement * displacement;
-    feature.error += error * error;
-    if (error > fit.largest) {
-      fit.largest = error;
-      fit.part = part;
-      fit.vertex = static_cast<int>(v);
+  return left;
+}
+
+WireFit Fitter::fit(const Shape& shape, std::vector<WireMove> moves, std::vector<FeatureError>& features,
+                    std::vector<float>& counts) const {
+  WireFit result;
+  result.shape = shape.name;
+  result.moves = std::move(moves);
+  result.rebuilt = solver_.apply(result.moves);
+  for (int part = 0; part < static_cast<int>(character_.parts.size()); ++part) {
+    if (!pieces_.has_skin(part)) continue;
+    const Points wanted = detail::dense_delta(character_, shape, part), left = left_over(shape, part, result);
+    for (Eigen::Index v = 0; v < wanted.rows(); ++v) {
+      if (!pieces_.is_skin(part, static_cast<int>(v))) continue;
+      const double scale = pieces_.unit(part), error = scale * left.row(v).cast<double>().norm(),
+                   displacement = scale * wanted.row(v).cast<double>().norm();
+      result.displacement += displacement * displacement;
+      result.error += error * error;
+      FeatureError& feature = features[pieces_.feature(part, static_cast<int>(v))];
+      feature.displacement += displacement * displacement;
+      feature.error += error * error;
+      if (error > threshold_) counts.push_back(count_of(part, v, error));
+      if (error <= result.largest) continue;
+      result.largest = error;
+      result.part = part;
+      result.vertex = static_cast<int>(v);
     }
-    const double lost = std::min(error, threshold_);
-    fit.kept_error += lost * lost;
-    if (error > threshold_) kept.row(v) = static_cast<float>(1 - threshold_ / error) * left.row(v);
   }
-  PartDelta residual = detail::sparse_delta(part, kept);
-  if (!residual.vertices.empty()) fit.residual.push_back(std::move(residual));
+  result.displacement = std::sqrt(result.displacement);
+  result.error = std::sqrt(result.error);
+  return result;
+}
+
+void Fitter::keep(const Shape& shape, double least, WireFit& fit) const {
+  double lost = 0;
+  for (int part = 0; part < static_cast<int>(character_.parts.size()); ++part) {
+    if (!pieces_.has_skin(part)) continue;
+    Points left = left_over(shape, part, fit);
+    for (Eigen::Index v = 0; v < left.rows(); ++v) {
+      const double error = pieces_.is_skin(part, static_cast<int>(v))
+                               ? pieces_.unit(part) * left.row(v).cast<double>().norm()
+                               : 0;
+      const double share =
+          std::min(kept_share(error, threshold_), kept_share(count_of(part, v, error), least));
+      lost += (1 - share) * (1 - share) * error * error;
+      left.row(v) *= static_cast<float>(share);
+    }
+    PartDelta residual = detail::sparse_delta(part, left);
+    if (!residual.vertices.empty()) fit.residual.push_back(std::move(residual));
+  }
+  fit.kept_error = std::sqrt(lost);
+}
+
+/// What a vertex has to count for, at least, so that no more than `most` of all `counts` exceed it.
+double least_count(const std::vector<std::vector<float>>& counts, std::size_t most) {
+  std::vector<float> all;
+  for (const std::vector<float>& list : counts) all.insert(all.end(), list.begin(), list.end());
+  if (all.size() <= most) return 0;
+  const auto at = all.begin() + static_cast<std::ptrdiff_t>(most);
+  std::nth_element(all.begin(), at, all.end(), std::greater<>());
+  return *at;
 }
 
 /// The shape's new displacements: by wires and what is kept on the skin, its own elsewhere.
@@ -247,6 +326,9 @@ ExtractResult extract_wires(const Character& character, std::span<const Wire> wi
   if (!(options.residual >= 0) || !std::isfinite(options.residual))
     throw invalid_input("residual", "is " + std::to_string(options.residual),
                         "a part of the face's box, 0 or more");
+  if (!(options.residual_vertices >= 0 && options.residual_vertices <= 1))
+    throw invalid_input("residual vertices", "are " + std::to_string(options.residual_vertices),
+                        "a share of the vertices, 0 to 1");
   std::set<std::string> names;
   for (const Wire& wire : wires)
     if (!names.insert(wire.name).second)
@@ -263,12 +345,21 @@ ExtractResult extract_wires(const Character& character, std::span<const Wire> wi
   std::vector<std::vector<FeatureError>> features(character.shapes.size(), pieces.features());
   result.features = pieces.features();
   result.shapes.resize(character.shapes.size());
-  const Fitter fitter(character, solver, pieces, options.residual * result.box);
+  const Fitter fitter(character, solver, pieces, options);
   start = Clock::now();
-  parallel_for(character.shapes.size(), 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t s = begin; s < end; ++s) result.shapes[s] = fitter.fit(character.shapes[s], features[s]);
-  });
+  std::vector<std::vector<WireMove>> moves = solver.solve(character.shapes);
   result.solve_seconds = seconds_since(start);
+  std::vector<std::vector<float>> counts(character.shapes.size());
+  parallel_for(character.shapes.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t s = begin; s < end; ++s)
+      result.shapes[s] = fitter.fit(character.shapes[s], std::move(moves[s]), features[s], counts[s]);
+  });
+  const double least = least_count(
+      counts, static_cast<std::size_t>(options.residual_vertices * static_cast<double>(result.skin_vertices) *
+                                       static_cast<double>(character.shapes.size())));
+  parallel_for(character.shapes.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t s = begin; s < end; ++s) fitter.keep(character.shapes[s], least, result.shapes[s]);
+  });
   for (const auto& list : features)
     for (std::size_t f = 0; f < list.size(); ++f) {
       result.features[f].displacement += list[f].displacement;

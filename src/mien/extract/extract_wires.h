@@ -37,6 +37,8 @@ class WireSolver {
   /// The moves of all wires that rebuild the shape best, ascending by wire; none for a shape that moves no vertex in reach.
   ///   cost  0.3 ms for the system above
   std::vector<WireMove> solve(const Shape& shape) const;
+  /// The same for many: the factors are read once for all.
+  std::vector<std::vector<WireMove>> solve(std::span<const Shape> shapes) const;
 
   /// What moves do: one entry a part that wires reach, one row a vertex in reach; part space.
   std::vector<PartDelta> apply(std::span<const WireMove> moves) const;
@@ -50,9 +52,12 @@ struct ExtractOptions {
   WireSolverOptions solver;
   bool exact =
       false;  ///< keep the shapes as they are beside their wires; false: replace them by what is kept of them
-  /// What the wires leave over is kept where it exceeds this part of the face's box, less this part of it, so that the surface
-  /// stays smooth: the rest is then nowhere off by more.
+  /// What the wires leave over is kept where it exceeds this part of the face's box: nothing of it there, all of it from twice that on, so
+  /// that the surface stays smooth. The rest is then nowhere off by more.
   double residual = 0.002;
+  /// And at most on this share of the vertices of the pieces that carry a wire, a shape on average: where it counts most, over all
+  /// shapes, error times the root of the vertex weight. 1: wherever it exceeds `residual`.
+  double residual_vertices = 1;
   Progress progress;
 };
 

@@ -1,5 +1,6 @@
 #pragma once
-/// What a designer would otherwise try out: how far each wire reaches, which vertices count, where another wire would help.
+/// What a designer would otherwise try out: where each wire lies and how far it reaches, which vertices count, where another
+/// wire would help.
 
 #include <span>
 #include <string>
@@ -19,10 +20,10 @@ std::vector<Eigen::VectorXf> outer_vertex_weights(const Character& character, st
 
 struct ImproveOptions {
   WireSolverOptions solver;
-  int sweeps = 2;                  ///< over the range of each wire, by ever smaller factors
+  int sweeps = 2;                  ///< over each wire, by ever smaller steps
   bool varying = false;            ///< then let ranges vary along the curve: four values a wire
   bool alike = true;               ///< every expression counts alike; false: by the size of its displacements
-  std::vector<std::string> fixed;  ///< wires whose ranges stay
+  std::vector<std::string> fixed;  ///< wires whose ranges, or places, stay
   Progress progress;
 };
 
@@ -39,6 +40,15 @@ struct ImproveResult {
 ///   method  coordinate descent: every candidate is bound, solved and measured by what its normal equations leave over
 ImproveResult improve_wires(const Character& character, std::span<const Wire> wires,
                             const ImproveOptions& options = {});
+
+/// The same wires with their reference curves where they rebuild the character's shapes best, near where they were drawn: as a whole
+/// moved across their direction or along it, tilted, bent, lengthened or shortened by at most a quarter of their range. Points
+/// stay on the surface; twins move as mirror images; ranges stay (`improve_wires` comes after). Wires that were not drawn
+/// through points stay.
+///   throws  as improve_wires
+///   cost    about 300 tries like those of improve_wires, each with a curve to draw
+ImproveResult move_curves(const Character& character, std::span<const Wire> wires,
+                          const ImproveOptions& options = {});
 
 /// A wire where an extraction left most over: through the vertex with the largest error around it, along the direction in which
 /// that error spreads.

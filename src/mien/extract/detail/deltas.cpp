@@ -24,6 +24,16 @@ PartDelta sparse_delta(int part, const Points& dense) {
   return delta;
 }
 
+std::vector<Eigen::Matrix3d> vectors_to_model(const Character& character) {
+  const std::vector<Eigen::Matrix4d> model = model_matrices(character);
+  std::vector<Eigen::Matrix3d> vectors;
+  for (const Part& part : character.parts)
+    vectors.push_back(part.skin >= 0 || part.node < 0
+                          ? Eigen::Matrix3d(Eigen::Matrix3d::Identity())
+                          : Eigen::Matrix3d(model[part.node].topLeftCorner<3, 3>()));
+  return vectors;
+}
+
 void replace_delta(Shape& shape, PartDelta delta) {
   auto at = std::lower_bound(shape.parts.begin(), shape.parts.end(), delta.part,
                              [](const PartDelta& d, int part) { return d.part < part; });
