@@ -180,7 +180,7 @@ std::vector<SurfacePoint> vertices_near(const Character& character, const std::v
 
 PinSet read_pins(const std::filesystem::path& path, const Character& character) {
   return detail::read_json_file(path, [&](const JsonObject& root) {
-    root.expect_only({"pins", "locked", "limits", "exclusive", "stiffness", "joints"});
+    root.expect_only({"pins", "locked", "limits", "exclusive", "stiffness", "joints", "wires"});
     if (!root.has("pins") || root.json()["pins"].empty())
       throw io_error("file", "has no \"pins\"", R"(give {"pins": [{"at": POINT, "goal": [x, y, z]}]})");
     detail::PointReader points(character);
@@ -193,6 +193,8 @@ PinSet read_pins(const std::filesystem::path& path, const Character& character) 
         set.joints.push_back(read_joint(JsonObject(joint, fmt::format("joint {}", name)),
                                         joint_named(character, name, "joints")));
     }
+    for (const std::string& name : root.texts("wires"))
+      set.wires.push_back(at_place("wires", [&] { return wire_index(character, name); }));
     return set;
   });
 }

@@ -31,12 +31,13 @@ struct PinSet {
   std::vector<std::vector<int>> exclusive;
   std::vector<double> stiffness;  ///< #sliders or none
   std::vector<NamedJoint> joints;
+  std::vector<int> wires;  ///< those that may move
 };
 
 /// {"pins": [{"at": POINT or {"joint": NAME}, "goal": [x, y, z] or "move": [dx, dy, dz], "axes": "xyz" or {"plane": [nx, ny,
 /// nz]} or {"direction": [x, y, z]}, "weight": 1, "hard": false, "sliders": [NAME, ...]}], "locked": [NAME], "limits": {NAME:
 /// [low, high]}, "exclusive": [[NAME, ...]], "stiffness": {NAME: number}, "joints": {NAME: {"turn": [[x, y, z], [x, y, z]],
-/// "shift": ...}}}.
+/// "shift": ...}}, "wires": [NAME, ...]}.
 ///   throws  Error naming the file and the place: another form, names that the character does not have, numbers that are not
 ///           finite, a position farther from the surface than a tenth of the face
 PinSet read_pins(const std::filesystem::path& path, const Character& character);

@@ -32,13 +32,15 @@ double size_of(const Character& character) {
   return square > 0 ? std::sqrt(square) : 1;
 }
 
-std::vector<PinnedRig::Joint> joints_of(const SolvePinsOptions& options) {
-  std::vector<PinnedRig::Joint> joints;
+PinnedRig::Freed freed_by(const SolvePinsOptions& options, double length) {
+  PinnedRig::Freed freed;
+  freed.length = length;
+  for (const DraggedWire& wire : options.wires) freed.wires.push_back(wire.wire);
   for (const DraggedJoint& joint : options.joints) {
     const bool turns = joint.turn_low != joint.turn_high, shifts = joint.shift_low != joint.shift_high;
-    if (turns || shifts) joints.push_back({joint.node, turns, shifts});
+    if (turns || shifts) freed.joints.push_back({joint.node, turns, shifts});
   }
-  return joints;
+  return freed;
 }
 
 std::span<const double> span_of(const Eigen::VectorXd& v) {
@@ -47,9 +49,9 @@ std::span<const double> span_of(const Eigen::VectorXd& v) {
 
 const Character& checked(const Character& character, const std::vector<Pin>& pins, const RigPose& start,
                          const SolvePinsOptions& options) {
-  detail::check_pins(character, pins);
-  detail::check_start(character, start);
   detail::check_options(character, options);
+  detail::check_pins(character, pins, !options.wires.empty());
+  detail::check_start(character, start);
   return character;
 }
 
@@ -61,7 +63,7 @@ struct PinSolver::Impl {
       : pins(given),
         options(given_options),
         size(size_of(checked(character, given, start, given_options))),
-        rig(character, pins, start, joints_of(options), size),
+        rig(character, pins, start, freed_by(options, size)),
         result(start) {
     sliders = static_cast<int>(character.sliders.size());
     x = start_x = rig.start();
@@ -126,7 +128,10 @@ void PinSolver::Impl::set_rows_at_start() {
   b.array().colwise() *= row_weight.array();
   if (!(b.squaredNorm() > 0))
     throw invalid_input(pins.size() == 1 ? "pin 1" : "pins",
-                        "cannot be moved: no slider moves the face there", "pin a point that a shape moves");
+                        options.wires.empty()
+                            ? "cannot be moved: no slider moves the face there"
+                            : "cannot be moved: neither a slider nor a wire moves the face there",
+                        "pin a point that a shape moves");
 }
 
 void PinSolver::Impl::set_stiffness(const Character& character) {
@@ -144,6 +149,12 @@ void PinSolver::Impl::set_stiffness(const Character& character) {
   for (const DraggedJoint& joint : options.joints) {
     const int unknowns = 3 * (joint.turn_low != joint.turn_high) + 3 * (joint.shift_low != joint.shift_high);
     stiffness.segment(column, unknowns).setConstant(joint.stiffness * (alpha + mu));
+    column += unknowns;
+  }
+  for (const DraggedWire& dragged : options.wires) {
+    const Wire& wire = character.wires[static_cast<std::size_t>(dragged.wire)];
+    const int unknowns = 3 * wire.curve.control_count() + 1 + 3 * wire.turn_controls;
+    stiffness.segment(column, unknowns).setConstant(dragged.stiffness * (alpha + mu));
     column += unknowns;
   }
   const double most = row_weight.maxCoeff() * row_weight.maxCoeff();
@@ -199,6 +210,8 @@ void PinSolver::Impl::set_limits(const Character& character) {
       column += 3;
     }
   }
+  low.tail(n - column).setConstant(-std::numeric_limits<double>::infinity());  // wires
+  high.tail(n - column).setConstant(std::numeric_limits<double>::infinity());
   for (const int slider : options.locked) low[slider] = high[slider] = start_x[slider];
   least = low;
   most = high;

@@ -30,6 +30,14 @@ struct DraggedJoint {
   double stiffness = 1;
 };
 
+/// A wire that a drag may move: its control points, its scale and its turns, without limits.
+struct DraggedWire {
+  int wire = 0;
+  /// What moving a control point by the wire's longest range, changing the scale by 1, or turning by a radian costs against a
+  /// slider's move by one.
+  double stiffness = 1;
+};
+
 /// How sliders move together, learned from clips (`learn_prior`): a Gaussian over slider values.
 struct SliderPrior {
   Eigen::VectorXd mean;       ///< #sliders
@@ -62,6 +70,7 @@ struct SolvePinsOptions {
   double prior_strength = 1;         ///< of the prior against the plain cost of change
   bool towards_prior_mean = false;   ///< also pull to the clips' mean; else pins at rest still change nothing
   std::vector<DraggedJoint> joints;  ///< none: the joints stay
+  std::vector<DraggedWire> wires;    ///< none: the wires stay. A pin that has `sliders` is not moved by wires
   int most_solves = 8;               ///< quadratic programs for a rig that is not linear
 };
 
@@ -86,8 +95,8 @@ struct SolvePinsResult {
 /// the result is the nearest pose to meeting them, `hard_met` is false and `misses` says by how much.
 class PinSolver {
  public:
-  ///   throws  invalid_input: no pins, no sliders; a pin off the surface, with numbers that are not finite or a weight not
-  ///           above 0; a slider, node or joint out of range; limits upside down; options out of range; hard pins on one
+  ///   throws  invalid_input: no pins; neither sliders nor wires to move; a pin off the surface, with numbers that are not finite or a weight not
+  ///           above 0; a slider, node, joint or wire out of range; limits upside down; options out of range; hard pins on one
   ///           point with different goals; pins that nothing moves
   ///   cost    linear in the deltas of all shapes, then #rows^2 x #sliders
   PinSolver(const Character& character, const std::vector<Pin>& pins, const RigPose& start,

@@ -2,6 +2,7 @@
 
 #include <Eigen/QR>
 #include <cmath>
+#include <set>
 
 #include "mien/core/error.h"
 
@@ -72,6 +73,18 @@ void check_prior(const Character& character, const SliderPrior& prior) {
     throw invalid_input("prior", "is not finite", "finite numbers");
 }
 
+void check_wires(const Character& character, const std::vector<DraggedWire>& wires) {
+  std::set<int> seen;
+  for (const DraggedWire& dragged : wires) {
+    check_index("wires", "wire", dragged.wire, character.wires.size());
+    const Wire& wire = character.wires[static_cast<std::size_t>(dragged.wire)];
+    if (!seen.insert(dragged.wire).second)
+      throw invalid_input("wire " + wire.name, "is there twice", "each wire once");
+    if (!(dragged.stiffness > 0) || !std::isfinite(dragged.stiffness))
+      throw invalid_input("stiffness of wire " + wire.name, "is not above 0", "1, say");
+  }
+}
+
 }  // namespace
 
 std::string pin_name(std::size_t index) {
@@ -100,8 +113,8 @@ void check_surface_point(const Character& character, const SurfacePoint& point, 
                         "barycentric coordinates that are not negative and sum to 1");
 }
 
-void check_pins(const Character& character, const std::vector<Pin>& pins) {
-  if (character.sliders.empty())
+void check_pins(const Character& character, const std::vector<Pin>& pins, bool others_move) {
+  if (character.sliders.empty() && !others_move)
     throw invalid_input("character", "has no sliders",
                         "shapes, each with its slider, so that pins can move something");
   if (pins.empty()) throw invalid_input("pins", "are none", "one or more");
@@ -163,6 +176,7 @@ void check_options(const Character& character, const SolvePinsOptions& options) 
   for (const SliderLimits& limits : options.limits) check_limits(character, limits);
   for (const std::vector<int>& group : options.exclusive) check_slider_list(character, "exclusive", group);
   for (const DraggedJoint& joint : options.joints) check_joint(character, joint);
+  check_wires(character, options.wires);
   if (options.prior) check_prior(character, *options.prior);
 }
 

@@ -9,7 +9,8 @@
 namespace mien::detail {
 
 ///   throws  invalid_input: as PinSolver says, but for what only the rig's derivative shows
-void check_pins(const Character& character, const std::vector<Pin>& pins);
+///   others_move  something besides sliders may move
+void check_pins(const Character& character, const std::vector<Pin>& pins, bool others_move = false);
 void check_start(const Character& character, const RigPose& start);
 void check_options(const Character& character, const SolvePinsOptions& options);
 

@@ -41,14 +41,24 @@ Eigen::Matrix3d turn_slopes(const Eigen::Vector3d& turn) {
 }  // namespace
 
 PinnedRig::PinnedRig(const Character& character, const std::vector<Pin>& pins, const RigPose& start,
-                     const std::vector<Joint>& joints, double length)
-    : map_(character), joints_(joints), length_(length), sliders_(map_.slider_count()) {
+                     const Freed& freed)
+    : map_(character), joints_(freed.joints), length_(freed.length), sliders_(map_.slider_count()) {
   skeleton_.nodes = character.nodes;
   skeleton_.constraints = character.constraints;
   std::vector<SurfacePoint> points;
   for (std::size_t p = 0; p < pins.size(); ++p) add_pin(pins[p], static_cast<int>(p), points);
-  evaluator_.emplace(character, points);
-  freedoms_.shapes.resize(character.shapes.size());
+  Eigen::Index shapes = map_.shape_count();
+  if (freed.wires.empty() && start.wires.empty()) {
+    evaluator_.emplace(character, points);
+  } else {
+    wires_.emplace(character, freed.wires, start.wires);
+    Character with_wires = character;
+    wires_->add_shapes(points, with_wires);
+    evaluator_.emplace(with_wires, points);
+    shapes = static_cast<Eigen::Index>(with_wires.shapes.size());
+  }
+  weights_.setZero(shapes);
+  freedoms_.shapes.resize(static_cast<std::size_t>(shapes));
   std::iota(freedoms_.shapes.begin(), freedoms_.shapes.end(), 0);
   for (const Joint& joint : joints_) freedoms_.joints.push_back({joint.node, joint.turns, joint.shifts});
   start_positions_.resize(static_cast<Eigen::Index>(pins.size()), 3);
@@ -79,7 +89,8 @@ void PinnedRig::add_pin(const Pin& pin, int index, std::vector<SurfacePoint>& po
 void PinnedRig::read_start(const RigPose& start) {
   int count = sliders_;
   for (const Joint& joint : joints_) count += 3 * joint.turns + 3 * joint.shifts;
-  start_.resize(count);
+  if (wires_) count += wires_->count();
+  start_.setZero(count);
   start_.head(sliders_) = start.sliders.values;
   int column = sliders_;
   for (const Joint& joint : joints_) {
@@ -94,14 +105,14 @@ void PinnedRig::read_start(const RigPose& start) {
     }
   }
   seen_.resize(sliders_);
-  weights_.resize(map_.shape_count());
-  map_.weights(start.sliders.values, weights_);
+  own_weights_.resize(map_.shape_count());
+  set_weights(Region{}, start_);
   start_weights_ = weights_;
   start_locals_ = start.locals;
   pose_ = Pose{ShapeWeights(weights_), start.locals, {}};
   evaluate_points(start_positions_);
   if (joints_.empty()) {
-    point_slopes_.setZero(3 * start_positions_.rows(), map_.shape_count());
+    point_slopes_.setZero(3 * start_positions_.rows(), shape_count());
     differentiate_points();
   }
   start_coordinates_.resize(row_count());
@@ -138,7 +149,7 @@ void PinnedRig::differentiate_points() {
 void PinnedRig::add_joint_point_rows(const std::vector<Eigen::Matrix4d>& model) {
   for (const auto& [pin, node] : node_pins_) {
     const Eigen::Vector3d p = model[node].topRightCorner<3, 1>();
-    Eigen::Index column = map_.shape_count();
+    Eigen::Index column = shape_count();
     for (const Joint& joint : joints_) {
       bool above = false;
       for (int n = node; n >= 0 && !above; n = skeleton_.nodes[n].parent) above = n == joint.node;
@@ -162,6 +173,18 @@ const Eigen::VectorXd& PinnedRig::seen(const Region& region, const Eigen::Vector
   for (std::size_t s = 0; s < region.sees.size(); ++s)
     if (!region.sees[s]) seen_[static_cast<Eigen::Index>(s)] = start_[static_cast<Eigen::Index>(s)];
   return seen_;
+}
+
+/// Weights of the character's shapes, then of those that stand for wires.
+void PinnedRig::set_weights(const Region& region, const Eigen::VectorXd& x) {
+  map_.weights(seen(region, x), own_weights_);
+  weights_.head(own_weights_.size()) = own_weights_;
+  if (!wires_) return;
+  weights_[own_weights_.size()] = 1;
+  if (region.sees.empty())
+    weights_.tail(wires_->count()) = x.tail(wires_->count());
+  else
+    weights_.tail(wires_->count()).setZero();
 }
 
 void PinnedRig::set_joints(const Eigen::VectorXd& x, std::vector<Transform>& locals) const {
@@ -189,7 +212,7 @@ void PinnedRig::set_joints(const Eigen::VectorXd& x, std::vector<Transform>& loc
 void PinnedRig::coordinates(const Eigen::VectorXd& x, Eigen::VectorXd& out) {
   out.resize(row_count());
   for (const Region& region : regions_) {
-    map_.weights(seen(region, x), weights_);
+    set_weights(region, x);
     if (joints_.empty()) {
       weights_ -= start_weights_;
       moved_.noalias() = slopes_ * weights_;
@@ -208,7 +231,7 @@ void PinnedRig::rows(const Eigen::VectorXd& x, Eigen::MatrixXd& out) {
   out.setZero(row_count(), unknown_count());
   for (const Region& region : regions_) {
     if (!joints_.empty()) {
-      map_.weights(seen(region, x), weights_);
+      set_weights(region, x);
       pose_.shape_weights.values = weights_;
       set_joints(x, pose_.locals);
       differentiate_points();
@@ -227,7 +250,7 @@ void PinnedRig::add_region_rows(const Region& region, const Eigen::VectorXd& x, 
       for (const int r : region.rows) out(r, slope.slider) += slope.value * slopes_(r, slope.shape);
   }
   int column = sliders_;
-  Eigen::Index from = map_.shape_count();
+  Eigen::Index from = shape_count();
   for (const Joint& joint : joints_) {
     if (joint.turns) {
       const Eigen::Matrix3d chain = turn_slopes(x.segment<3>(column));
@@ -242,11 +265,16 @@ void PinnedRig::add_region_rows(const Region& region, const Eigen::VectorXd& x, 
       from += 3;
     }
   }
+  if (!wires_ || !region.sees.empty()) return;
+  const Eigen::Index first = shape_count() - wires_->count();
+  for (const int r : region.rows)
+    out.row(r).tail(wires_->count()) = slopes_.row(r).segment(first, wires_->count());
 }
 
 void PinnedRig::write(const Eigen::VectorXd& x, RigPose& pose) const {
   pose.sliders.values = x.head(sliders_);
   set_joints(x, pose.locals);
+  if (wires_) pose.wires = wires_->moves(x.tail(wires_->count()));
 }
 
 }  // namespace mien::detail

@@ -11,20 +11,27 @@
 #include "mien/character/pose.h"
 #include "mien/evaluate/point_evaluator.h"
 #include "mien/pose/detail/slider_map.h"
+#include "mien/pose/detail/wire_unknowns.h"
 
 namespace mien::detail {
 
 /// Unknowns x: #sliders slider values, then three numbers a turning joint (a rotation vector after the rest rotation,
-/// radians, in the joint's own axes) and three a shifting one (from the rest translation, in `length`).
+/// radians, in the joint's own axes) and three a shifting one (from the rest translation, in `length`), then those of wires
+/// (changes from the start). What a start's wires do is there also when no wire may move.
 class PinnedRig {
  public:
   struct Joint {
     int node;
     bool turns, shifts;
   };
-  ///   length  what a shift by one means, in the character's unit
+  /// What may move besides the sliders.
+  struct Freed {
+    std::vector<Joint> joints;
+    std::vector<int> wires;
+    double length = 1;  ///< what a joint's shift by one means, in the character's unit
+  };
   PinnedRig(const Character& character, const std::vector<Pin>& pins, const RigPose& start,
-            const std::vector<Joint>& joints, double length);
+            const Freed& freed);
 
   int unknown_count() const { return static_cast<int>(start_.size()); }
   int row_count() const { return static_cast<int>(row_pin_.size()); }
@@ -41,7 +48,7 @@ class PinnedRig {
   void rows(const Eigen::VectorXd& x, Eigen::MatrixXd& out);
   /// Where the pins are at the start, #P x 3, model space.
   const PointsD& start_positions() const { return start_positions_; }
-  /// Sets the rig pose's sliders and joints to x.
+  /// Sets the rig pose's sliders, joints and wires to x.
   void write(const Eigen::VectorXd& x, RigPose& pose) const;
 
  private:
@@ -53,6 +60,8 @@ class PinnedRig {
   void add_pin(const Pin& pin, int index, std::vector<SurfacePoint>& points);
   void read_start(const RigPose& start);
   const Eigen::VectorXd& seen(const Region& region, const Eigen::VectorXd& x);
+  void set_weights(const Region& region, const Eigen::VectorXd& x);
+  Eigen::Index shape_count() const { return weights_.size(); }
   void set_joints(const Eigen::VectorXd& x, std::vector<Transform>& locals) const;
   void evaluate_points(PointsD& out);
   void differentiate_points();
@@ -64,6 +73,8 @@ class PinnedRig {
   std::vector<Joint> joints_;
   double length_ = 1;
   int sliders_ = 0;
+  std::optional<WireUnknowns>
+      wires_;  // as shapes behind the character's own: the start's moves, then one an unknown
   std::vector<Region> regions_;
   std::vector<int> row_pin_;
   std::vector<Eigen::Vector3d> directions_;
@@ -72,7 +83,7 @@ class PinnedRig {
   std::optional<PointEvaluator> evaluator_;
   Freedoms freedoms_;
   std::vector<Transform> start_locals_;
-  Eigen::VectorXd start_, seen_, moved_, weights_, start_weights_, start_coordinates_;
+  Eigen::VectorXd start_, seen_, moved_, own_weights_, weights_, start_weights_, start_coordinates_;
   Pose pose_{ShapeWeights(0), {}};
   PointsD points_, found_, start_positions_;
   Eigen::MatrixXd point_slopes_;  // 3 #points x (#shapes + joint columns), as the evaluator gives them
