@@ -32,13 +32,13 @@ void add_binds(const Character& character, const std::vector<int>& node_of_part,
                Json& binds) {
   const Shape& shape = character.shapes[static_cast<std::size_t>(bind.shape)];
   for (const PartDelta& delta : shape.parts) {
+    const int node = node_of_part[static_cast<std::size_t>(delta.part)];
+    if (node < 0) continue;  // the file only carries the part
     int index = 0;
     for (int s = 0; s < bind.shape; ++s)
       for (const PartDelta& other : character.shapes[static_cast<std::size_t>(s)].parts)
         index += other.part == delta.part;
-    binds.push_back({{"node", node_of_part[static_cast<std::size_t>(delta.part)]},
-                     {"index", index},
-                     {"weight", bind.weight}});
+    binds.push_back({{"node", node}, {"index", index}, {"weight", bind.weight}});
   }
 }
 

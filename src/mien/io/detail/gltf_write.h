@@ -40,7 +40,7 @@ class VertexRanges {
   std::set<std::pair<int, int>> faces_, ranges_;
 };
 
-/// The node of the file that shows each part; nodes of the character keep their numbers.
+/// The node of the file that shows each part, -1: none does; nodes of the character keep their numbers.
 std::vector<int> written_nodes_of_parts(const Character& character);
 /// The parts as glTF meshes, in order.
 Json write_meshes(const Character& character, GltfBuilder& builder);
