@@ -70,7 +70,10 @@ int bone_of(const VrmPlan& plan, const std::string& name) {
 }
 
 VrmMeta meta() {
-  return {"a", {"b"}};
+  VrmMeta meta;
+  meta.name = "a";
+  meta.authors = {"b"};
+  return meta;
 }
 
 TEST(PlanVrm, ACharacterWithoutPartsIsRefused) {
