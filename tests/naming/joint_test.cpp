@@ -39,9 +39,10 @@ TEST(JointNames, UnknownConventionIsSaid) {
 TEST(JointNames, AreUniqueAndMirrored) {
   const std::vector<std::string>& names = joint_names();
   EXPECT_EQ(std::set<std::string>(names.begin(), names.end()).size(), names.size());
-  for (const std::string& name : names)
-    if (const std::string mirror = mirrored_name(name); !mirror.empty())
-      EXPECT_NE(std::find(names.begin(), names.end(), mirror), names.end()) << name;
+  for (const std::string& name : names) {
+    const std::string mirror = mirrored_name(name);
+    EXPECT_TRUE(mirror.empty() || std::find(names.begin(), names.end(), mirror) != names.end()) << name;
+  }
 }
 
 TEST(JointNames, EachConventionIsRecognisedAndReadBack) {
@@ -70,6 +71,7 @@ TEST(JointNames, TheSameWordMeansWhatItsConventionSays) {
 TEST(JointNames, UsualWordsToo) {
   EXPECT_EQ(joint_of({"Head"}, 0), "head");
   EXPECT_EQ(joint_of({"eye_L"}, 0), "leftEye");
+  EXPECT_EQ(joint_of({"eyeRight_joint"}, 0), "rightEye");
   EXPECT_EQ(joint_of({"upperarm_r"}, 0), "rightUpperArm");
   EXPECT_EQ(joint_of({"mandible"}, 0), "jaw");
   EXPECT_EQ(joint_of({"antenna"}, 0), "");

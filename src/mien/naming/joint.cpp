@@ -136,7 +136,7 @@ const std::vector<Joint>& joints() {
 
 using NameKey = std::pair<std::string, char>;
 
-/// A joint's name without rig prefixes, separators, case and side.
+/// A joint's name without rig prefixes, the word joint, separators, case and side.
 NameKey key_of(std::string_view name) {
   if (const std::size_t space = name.find_last_of(":|"); space != name.npos) name.remove_prefix(space + 1);
   for (const std::string_view prefix : {"DEF-", "ORG-", "MCH-", "mixamorig_", "mixamorig"})
@@ -144,7 +144,12 @@ NameKey key_of(std::string_view name) {
       name.remove_prefix(prefix.size());
       break;
     }
-  const PlainName plain = plain_name(name);
+  PlainName plain = plain_name(name);
+  for (const std::string_view word : {"joint", "jnt", "bone"})
+    if (plain.base.size() > word.size() && plain.base.ends_with(word)) {
+      plain.base.resize(plain.base.size() - word.size());
+      break;
+    }
   return {plain.base, plain.side};
 }
 
