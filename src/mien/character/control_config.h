@@ -47,9 +47,9 @@ struct ControlPad {
 /// Where things lie: columns of regions from left to right, in rows.
 struct ControlLayout {
   std::vector<std::vector<std::string>>
-      columns;       ///< region names; regions that no column names come after them
-  double width = 8;  ///< of a column
-  double rows = 34;  ///< a longer column goes on in another beside it
+      columns;        ///< region names; regions that no column names come after them
+  double width = 10;  ///< of a column
+  double rows = 44;   ///< a longer column goes on in another beside it
   bool operator==(const ControlLayout&) const = default;
 };
 

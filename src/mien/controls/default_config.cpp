@@ -24,8 +24,8 @@ std::vector<ControlRegion> face_regions() {
   add_sides(regions, "brows", {"*brow*", "*forehead*"});
   regions.push_back({"gaze", {"lookAt*", "look?At*", "gaze*"}, Side::any});
   add_sides(regions, "eyes",
-            {"*eye*", "lid*", "*_lid*", "*.lid*", "*blink*", "*lash*", "*squint*", "lookUp", "lookDown",
-             "lookLeft", "lookRight"});
+            {"*eye*", "lid*", "*_lid*", "*.lid*", "*blink*", "*lash*", "lookUp", "lookDown", "lookLeft",
+             "lookRight"});
   regions.push_back({"nose", {"*nose*", "*nostril*", "*sneer*"}, Side::any});
   add_sides(regions, "cheeks", {"*cheek*"});
   regions.push_back({"tongue", {"*tongue*"}, Side::any});

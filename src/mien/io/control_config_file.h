@@ -11,7 +11,7 @@ namespace mien {
 /// {"names": [{"match": PATTERN, "is": PATTERN}], "regions": [{"name": NAME, "match": [PATTERN, ...], "side": "left"}], "limits":
 /// [{"match": PATTERN, "slider": [low, high], "rotation": {"x": [low, high]}, "translation": {...}}], "mirrors": [[PATTERN, PATTERN]],
 /// "pads": [{"name": NAME, "label": TEXT, "region": NAME, "right": PATTERN, "left": ..., "up": ..., "down": ...}], "moves": [PATTERN],
-/// "layout": {"columns": [[REGION, ...], ...], "width": 8, "rows": 34}, "other": NAME}. What is left out is `usual`'s.
+/// "layout": {"columns": [[REGION, ...], ...], "width": 10, "rows": 44}, "other": NAME}. What is left out is `usual`'s.
 ///   throws  Error naming the file and the place: another form, an unknown member, numbers that are not finite
 ControlConfig read_control_config(const std::filesystem::path& path, const ControlConfig& usual);
 
