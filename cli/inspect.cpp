@@ -9,6 +9,7 @@
 #include "mien/character/validate.h"
 #include "mien/core/error.h"
 #include "mien/io/load.h"
+#include "rigging.h"
 
 namespace mien::cli {
 namespace {
@@ -124,6 +125,8 @@ json describe(const std::string& file, const Character& character) {
     for (const int joint : skin.joints)
       if (joint >= 0 && joint < static_cast<int>(character.nodes.size()) && joints.insert(joint).second)
         result["joints"].push_back(character.nodes[joint].name);
+  result["constraints"] = describe_constraints(character);
+  result["controls"] = describe_controls(character);
   for (const Clip& clip : character.clips) result["clips"].push_back(describe_clip(clip));
   for (const Material& material : character.appearance.materials)
     result["materials"].push_back(material.name);
@@ -209,6 +212,7 @@ std::string as_text(const json& result) {
   text += slider_rows(result);
   text += fmt::format("  joints     {}{}\n", result["joints"].size(),
                       result["joints"].empty() ? "" : ": " + joined(result["joints"]));
+  text += constraint_rows(result["constraints"]) + control_rows(result["controls"]);
   for (const json& clip : result["clips"])
     text += fmt::format("  clip       {}: {:.3f} s, {} channels, {} keys\n", clip["name"].get<std::string>(),
                         clip["seconds"].get<double>(), clip["channels"].get<int>(), clip["keys"].get<int>());

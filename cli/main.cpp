@@ -33,6 +33,9 @@ int main(int argc, char** argv) {
   mien::cli::add_evaluate(app, common);
   mien::cli::add_pose(app, common);
   mien::cli::add_attenuate(app, common);
+  mien::cli::add_constrain(app, common);
+  mien::cli::add_controls(app, common);
+  mien::cli::add_vrm(app, common);
   mien::cli::add_retarget(app, common);
   mien::cli::add_rename(app, common);
   mien::cli::add_map(app, common);

@@ -337,6 +337,13 @@ TEST(SolvePins, joints_turn_within_their_limits) {
   EXPECT_LT(result.pose.locals[1].rotation.angularDistance(wanted.locals[1].rotation), 0.01);
   result = solve_pins(face, {pin_at(chin, 20 * move)}, start, options);
   EXPECT_LT(Eigen::AngleAxisd(result.pose.locals[1].rotation).angle(), 0.5 + 1e-9);
+  Constraint limit;
+  limit.name = "jaw";
+  limit.node = 1;
+  limit.rotation[0] = {-0.1, 0.2};
+  face.constraints = {limit};
+  result = solve_pins(face, {pin_at(chin, 20 * move)}, start, options);
+  EXPECT_NEAR(Eigen::AngleAxisd(result.pose.locals[1].rotation).angle(), 0.2, 1e-9);
   Pin rest = pin_at(chin, {0, 0, 0});
   result = solve_pins(face, {rest}, start, options);
   EXPECT_EQ(result.pose.locals[1].rotation.coeffs(), start.locals[1].rotation.coeffs());

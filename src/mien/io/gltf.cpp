@@ -44,7 +44,8 @@ class SceneWriter {
 
   const Character& character_;
   std::vector<int> parents_;
-  std::vector<bool> animated_, has_children_, is_joint_;
+  std::vector<bool> animated_, has_children_;
+  std::vector<bool> is_used_;  ///< by a skin, a constraint or a control
 };
 
 Json SceneWriter::node_json(const Node& node, bool animated) const {
@@ -86,19 +87,26 @@ std::vector<int> SceneWriter::roots() const {
 
 /// Whether nothing but its mesh depends on a node's place in the tree.
 bool SceneWriter::is_bare(int node) const {
-  return !animated_[node] && !has_children_[node] && !is_joint_[node];
+  return !animated_[node] && !has_children_[node] && !is_used_[node];
 }
 
 void SceneWriter::write() {
   const std::size_t count = character_.nodes.size();
   animated_.assign(count, false);
   has_children_.assign(count, false);
-  is_joint_.assign(count, false);
+  is_used_.assign(count, false);
   for (const Clip& clip : character_.clips)
     for (const Channel& channel : clip.channels)
       if (channel.node >= 0) animated_[channel.node] = true;
   for (const Skin& skin : character_.skins)
-    for (const int joint : skin.joints) is_joint_[joint] = true;
+    for (const int joint : skin.joints) is_used_[joint] = true;
+  for (const Constraint& constraint : character_.constraints) {
+    is_used_[constraint.node] = true;
+    for (const ConstraintSource& source : constraint.sources) is_used_[source.node] = true;
+    if (constraint.up_node >= 0) is_used_[constraint.up_node] = true;
+  }
+  for (const Control& control : character_.controls)
+    if (control.node >= 0) is_used_[control.node] = true;
   for (std::size_t n = 0; n < count; ++n) {
     const Node& node = character_.nodes[n];
     parents_[n] = node.parent;
@@ -372,6 +380,12 @@ std::vector<std::uint8_t> binary_container(const Json& root, const std::vector<s
 }  // namespace
 
 namespace detail {
+
+std::vector<int> written_nodes_of_parts(const Character& character) {
+  SceneWriter scene(character);
+  scene.write();
+  return scene.node_of_part;
+}
 
 Json carried_json(const std::string& text, const std::string& place) {
   if (text.empty()) return Json::object();

@@ -32,7 +32,7 @@ Error unknown_format(const std::filesystem::path& path) {
 Character load(const std::filesystem::path& path, const LoadOptions& options) {
   const std::string extension = lower_extension(path);
   Character character;
-  if (extension == ".glb" || extension == ".gltf")
+  if (extension == ".glb" || extension == ".gltf" || extension == ".vrm")
     character = read_gltf(path);
   else if (extension == ".obj")
     character = read_obj(path);

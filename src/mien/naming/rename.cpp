@@ -69,4 +69,18 @@ Character rename(const Character& character, const NamePairs& names) {
   return renamed;
 }
 
+Character rename_joints(const Character& character, const NamePairs& names) {
+  Character renamed = character;
+  const std::map<std::string, std::string> table(names.begin(), names.end());
+  std::set<std::string> used;
+  give_names(table, renamed.nodes, used);
+  for (const auto& [from, to] : table) {
+    if (!used.contains(from)) throw invalid_input(from, "is no joint", "name one that `mien inspect` lists");
+    const auto has_name = [&](const Node& node) { return node.name == to; };
+    if (std::count_if(renamed.nodes.begin(), renamed.nodes.end(), has_name) > 1)
+      throw invalid_input("joint " + to, "would be the name of two", "give each its own new name");
+  }
+  return renamed;
+}
+
 }  // namespace mien

@@ -22,4 +22,9 @@ NamePairs names_for(const Character& character, Convention convention);
 ///   cost    linear
 Character rename(const Character& character, const NamePairs& names);
 
+/// The character with these nodes called otherwise. Nothing else changes.
+///   throws  invalid_input: an old name that no node has, a new name that another node has
+///   cost    nodes x pairs
+Character rename_joints(const Character& character, const NamePairs& names);
+
 }  // namespace mien

@@ -9,6 +9,7 @@
 
 #include "mien/core/error.h"
 #include "mien/pose/detail/box_qp.h"
+#include "mien/pose/detail/joint_limits.h"
 #include "mien/pose/detail/pin_checks.h"
 #include "mien/pose/detail/pinned_rig.h"
 
@@ -55,13 +56,19 @@ const Character& checked(const Character& character, const std::vector<Pin>& pin
   return character;
 }
 
+/// The options with joints that stay within the character's own limits.
+SolvePinsOptions narrowed(const Character& character, SolvePinsOptions options) {
+  options.joints = detail::within_limits(character, std::move(options.joints));
+  return options;
+}
+
 }  // namespace
 
 struct PinSolver::Impl {
   Impl(const Character& character, const std::vector<Pin>& given, const RigPose& start,
        const SolvePinsOptions& given_options)
       : pins(given),
-        options(given_options),
+        options(narrowed(character, given_options)),
         size(size_of(checked(character, given, start, given_options))),
         rig(character, pins, start, freed_by(options, size)),
         result(start) {

@@ -19,7 +19,7 @@ struct SliderLimits {
   double low = 0, high = 1;
 };
 
-/// A joint that a drag may turn or shift, within limits counted from its rest.
+/// A joint that a drag may turn or shift, within limits counted from its rest. Limit constraints on the node narrow them.
 struct DraggedJoint {
   int node = 0;
   /// Rotation vector after the rest rotation, in the joint's own axes, radians.

@@ -29,6 +29,7 @@ Character make_human() {
   sample::add_rig(built, form, regions);
   complete_sliders(built.character);
   sample::add_talking_clip(built.character);
+  sample::add_constraints(built.character);
   sample::place(built.character, 0.01, Eigen::Quaterniond::Identity(), Eigen::Vector3d::Zero());
   return std::move(built.character);
 }

@@ -12,6 +12,7 @@
 #include "mien/geometry/laplacian.h"
 #include "mien/geometry/moving_similarity.h"
 #include "mien/geometry/thin_plate_spline.h"
+#include "mien/transfer/carry_constraints.h"
 #include "mien/transfer/carry_skeleton.h"
 #include "mien/transfer/carry_skin_weights.h"
 #include "mien/transfer/carry_uvs.h"
@@ -432,6 +433,13 @@ void Run::carry_clips() {
     warn(std::to_string(dropped.size()) + " channels animate what the target does not get (" +
              dropped.front() + " ...)",
          "skin these parts to joints on the source to have them animated on the target");
+  std::vector<std::string> loose;
+  result_.constraints = carry_constraints(source_, result_, skeleton_, loose);
+  result_.controls = carry_controls(source_, result_, skeleton_, loose);
+  if (!loose.empty())
+    warn(std::to_string(loose.size()) + " constraints and controls are of what the target does not get (" +
+             loose.front() + " ...)",
+         "skin parts to these joints on the source");
 }
 
 }  // namespace

@@ -27,6 +27,9 @@ SurfacePoint read_vendor_point(const JsonObject& source, const std::vector<PartS
 /// Wires and what shapes do to them, from the file's vendor extension.
 void read_wires(const JsonObject& vendor, GltfDocument& document, const std::vector<PartSource>& sources,
                 Character& character);
+/// Constraints and the control interface, from the file's vendor extension.
+void read_constraints(const JsonObject& vendor, Character& character);
+void read_controls(const JsonObject& vendor, Character& character);
 /// What a channel moves of a wire; its keys are left out.
 Channel read_wire_channel(const JsonObject& source, const Character& character);
 /// N-gons, seams, groups, landmarks and curves from the vendor extension; sliders and wires too.

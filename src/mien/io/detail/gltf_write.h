@@ -40,17 +40,22 @@ class VertexRanges {
   std::set<std::pair<int, int>> faces_, ranges_;
 };
 
+/// The node of the file that shows each part, -1: none does; nodes of the character keep their numbers.
+std::vector<int> written_nodes_of_parts(const Character& character);
 /// The parts as glTF meshes, in order.
 Json write_meshes(const Character& character, GltfBuilder& builder);
 /// The vendor extension of one mesh: what the glTF arrays do not say about its faces, seams and groups.
 Json vendor_mesh(const Mesh& mesh, const SplitMesh& split, bool normals_computed, GltfBuilder& builder);
 /// Adds the spline surface or subdivision that the part's vertices control.
 void write_surface(const Part& part, Json& vendor);
-/// The vendor extension of the file: landmarks, curves, sliders and wires.
+/// The vendor extension of the file: landmarks, curves, sliders, wires, constraints, controls.
 Json vendor_root(const Character& character, GltfBuilder& builder);
 Json vendor_point(const SurfacePoint& point);
 /// Adds wires and what shapes do to them to the file's vendor extension.
 void write_wires(const Character& character, GltfBuilder& builder, Json& vendor);
+/// Adds constraints and the control interface to the file's vendor extension.
+void write_constraints(const Character& character, Json& vendor);
+void write_controls(const Character& character, Json& vendor);
 /// A channel that moves a wire, for the vendor extension of its animation.
 Json wire_channel_json(const Character& character, const Channel& channel, GltfBuilder& builder);
 /// Adds sliders, correctives and expressions to the file's vendor extension unless they are one plain slider a

@@ -65,6 +65,8 @@ Anchors anchors_of(const Mesh& mesh, const HeadMesh& head, const std::vector<int
 void add_shapes(BuiltCharacter& built, const CharacterForm& form, const FaceRegions& regions);
 void add_rig(BuiltCharacter& built, const CharacterForm& form, const FaceRegions& regions);
 void add_talking_clip(Character& character);
+/// Limits on the turns of jaw and eyes; the talking clip stays within them.
+void add_constraints(Character& character);
 
 /// Moves the whole character: positions, deltas, joints and translation keys; p -> R (scale p) + move.
 void place(Character& character, double scale, const Eigen::Quaterniond& turn, const Vector3d& move);

@@ -68,6 +68,8 @@ Character bare_target(const Character& target, const Pool& pool, bool skinned) {
   result.correctives.clear();
   result.expressions.clear();
   result.clips.clear();
+  result.constraints.clear();
+  result.controls.clear();
   result.skins.clear();
   for (std::size_t p = 0; p < result.parts.size(); ++p) {
     result.parts[p].skin = -1;

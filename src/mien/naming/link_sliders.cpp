@@ -1,8 +1,9 @@
+#include "mien/naming/link_sliders.h"
+
 #include <algorithm>
 #include <set>
 
 #include "mien/character/sliders.h"
-#include "mien/motion/retarget_sliders.h"
 #include "mien/naming/action.h"
 
 namespace mien {
