@@ -28,7 +28,9 @@ struct Arguments {
   std::string clip, view = std::string(name_of(View::front)), zoom;
   std::vector<int> size;
   double time = 0;
-  bool sheet = false, wireframe = false, landmarks = false;
+  bool sheet = false, wireframe = false, landmarks = false, plain = false, textured = false;
+  /// A still shows the face as it looks; a sheet is there to judge shapes by, which images hide.
+  Surfaces surfaces() const { return plain || (sheet && !textured) ? Surfaces::clay : Surfaces::painted; }
 };
 
 void set_shape(const Character& character, const std::string& argument, ShapeWeights& weights) {
@@ -102,20 +104,27 @@ void add_landmarks(const Character& character, const std::vector<Points>& posed,
   }
 }
 
-Picture draw_still(const Character& character, const Arguments& arguments, const Progress& progress) {
+/// A picture, and what could not be drawn on it.
+struct Drawn {
+  Picture picture;
+  std::vector<std::string> warnings;
+};
+
+Drawn draw_still(const Character& character, const Arguments& arguments, const Progress& progress) {
   RenderOptions options = options_of(character, arguments);
   const std::vector<Points> posed = evaluate(character, pose_of(character, arguments));
   if (arguments.landmarks) add_landmarks(character, posed, options);
   report_progress(progress, "render", 0);
-  Picture picture = render(character, posed, options);
+  const Renderer renderer(character, arguments.surfaces());
+  Drawn drawn{renderer.render(posed, options), renderer.warnings()};
   report_progress(progress, "render", 1);
-  return picture;
+  return drawn;
 }
 
 /// The neutral, then every shape at weight 1, in the character's order.
-Picture draw_sheet(const Character& character, const Arguments& arguments, const Progress& progress) {
+Drawn draw_sheet(const Character& character, const Arguments& arguments, const Progress& progress) {
   RenderOptions options = options_of(character, arguments);
-  const Renderer renderer(character);
+  const Renderer renderer(character, arguments.surfaces());
   const std::size_t count = character.shapes.size();
   std::vector<SheetCell> cells;
   for (std::size_t s = 0; s <= count; ++s) {
@@ -129,7 +138,7 @@ Picture draw_sheet(const Character& character, const Arguments& arguments, const
   SheetOptions sheet;
   sheet.title = arguments.character.filename().string();
   sheet.footer = fmt::format("{} shapes at weight 1", count);
-  return contact_sheet(cells, sheet);
+  return {contact_sheet(cells, sheet), renderer.warnings()};
 }
 
 void run(const Arguments& arguments, const Common& common) {
@@ -144,19 +153,22 @@ void run(const Arguments& arguments, const Common& common) {
     character.curves = std::move(set.curves);
   }
   const Progress progress = progress_bar(common);
-  Picture picture;
+  Drawn drawn;
   try {
-    picture = arguments.sheet ? draw_sheet(character, arguments, progress)
-                              : draw_still(character, arguments, progress);
+    drawn = arguments.sheet ? draw_sheet(character, arguments, progress)
+                            : draw_still(character, arguments, progress);
   } catch (const Error& error) {
     throw error.in_file(arguments.character.string());
   }
+  const Picture& picture = drawn.picture;
   write_file_atomically(arguments.output, encode_png(picture));
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  print_result(common,
-               fmt::format("{}: {} x {} pixels, {:.2f} s\n", arguments.output.string(), picture.width,
-                           picture.height, seconds),
+  std::string text = fmt::format("{}: {} x {} pixels, {:.2f} s\n", arguments.output.string(), picture.width,
+                                 picture.height, seconds);
+  for (const std::string& warning : drawn.warnings) text += fmt::format("warning: {}\n", warning);
+  print_result(common, text,
                {{"output", arguments.output.string()},
+                {"warnings", drawn.warnings},
                 {"width", picture.width},
                 {"height", picture.height},
                 {"seconds", seconds}});
@@ -192,6 +204,11 @@ void add_render(CLI::App& app, Common& common) {
       ->type_name("W,H");
   command->add_option("--zoom", arguments->zoom, "Frame the mouth or the eyes alone (default: the head)")
       ->type_name("mouth|eyes");
+  auto* plain =
+      command->add_flag("--plain", arguments->plain,
+                        "Clay, without images and vertex colours, to judge shape by (default with --sheet)");
+  command->add_flag("--textured", arguments->textured, "Draw images and vertex colours on a sheet too")
+      ->excludes(plain);
   command->add_flag("--wireframe", arguments->wireframe, "Draw the edges of the polygons");
   command->add_flag("--landmarks", arguments->landmarks, "Draw the character's landmarks and curves");
   command->add_option("--landmarks-file", arguments->landmarks_file, "Draw the landmarks of this file")

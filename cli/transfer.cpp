@@ -1,6 +1,7 @@
 #include "mien/transfer/transfer.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -14,6 +15,7 @@
 #include "mien/io/file.h"
 #include "mien/io/load.h"
 #include "mien/report/report.h"
+#include "mien/transfer/bake_textures.h"
 
 namespace mien::cli {
 namespace {
@@ -23,6 +25,7 @@ struct Request {
   TransferOptions options;
   std::vector<std::string> exaggerate;
   bool compress = false;
+  int bake = 0;  // pixels, 0: no images
 };
 
 /// "PCT" for all shapes, "NAME=PCT" for one.
@@ -90,6 +93,31 @@ std::string as_text(const TransferResult& result, const std::string& output) {
   return text;
 }
 
+/// Bakes the source's images and says what came of it.
+void bake(const Request& request, const Character& source, TransferResult& result, std::string& text,
+          nlohmann::json& json) {
+  BakeOptions options;
+  options.size = request.bake;
+  options.padding = std::max(4, request.bake / 64);
+  BakeResult baked = bake_textures(source, result.report.guide, result.character, options);
+  result.character = std::move(baked.character);
+  for (const BakedImage& image : baked.images) {
+    text +=
+        fmt::format("baked {} of material {} onto {}: charts cover {:.0f} %\n", fmt::join(image.slots, ", "),
+                    image.material, fmt::join(image.parts, ", "), 100 * image.covered);
+    json["baked"].push_back({{"material", image.material},
+                             {"parts", image.parts},
+                             {"slots", image.slots},
+                             {"covered", image.covered},
+                             {"overlap", image.overlap},
+                             {"doubtful", image.doubtful}});
+  }
+  for (const TransferWarning& warning : baked.warnings) {
+    text += fmt::format("warning: {}; {}\n", warning.what, warning.remedy);
+    json["warnings"].push_back({{"what", warning.what}, {"remedy", warning.remedy}});
+  }
+}
+
 std::string file_name(const std::string& path) {
   return std::filesystem::path(path).filename().string();
 }
@@ -110,14 +138,15 @@ void run(Request& request, const Common& common) {
   request.options.progress = progress_bar(common);
   const std::vector<FoundSide> found =
       find_missing({request.source, source}, {request.target, target}, request.options.progress);
-  const TransferResult result = transfer(source, target, request.options);
+  TransferResult result = transfer(source, target, request.options);
   std::optional<Report> report;
   if (!folder.empty())
     report = make_report({source, target, result, request.options, file_name(request.source),
                           file_name(request.target), file_name(request.output), request.options.progress});
-  save(result.character, request.output, {request.compress});
   std::string text = as_text(result, request.output);
   nlohmann::json json = as_json(result.report, request.output);
+  if (request.bake > 0) bake(request, source, result, text, json);
+  save(result.character, request.output, {request.compress});
   if (report) {
     write_file_atomically(folder / "report.html", report->html);
     write_file_atomically(folder / "report.json", report->json);
@@ -173,6 +202,10 @@ void add_transfer(CLI::App& app, Common& common) {
       ->capture_default_str();
   command->add_flag("--replace-uvs", options.replace_uvs,
                     "Take the source's UVs even where the target has its own");
+  command
+      ->add_flag("--bake{1024}", request->bake,
+                 "Carry the source's images into the target's own UVs; --bake=SIZE: pixels a side")
+      ->check(CLI::Range(16, 8192));
   command->add_flag("--compress", request->compress, "Write quantised, meshopt-compressed glTF");
   command->add_option("--report", request->report, "Folder for a page with pictures and the same as JSON");
   command->footer("Example:\n  mien transfer human.glb cartoon.glb -o cartoon-rigged.glb --report report");

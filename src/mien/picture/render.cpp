@@ -61,9 +61,13 @@ Camera camera_of(const Character& character, const std::vector<Points>& posed, c
 
 }  // namespace
 
-Renderer::Renderer(const Character& character) : state_(std::make_unique<State>()) {
+Renderer::Renderer(const Character& character, Surfaces surfaces) : state_(std::make_unique<State>()) {
   state_->character = character;
-  state_->soup = detail::make_soup(character);
+  state_->soup = detail::make_soup(character, surfaces == Surfaces::painted);
+}
+
+const std::vector<std::string>& Renderer::warnings() const {
+  return state_->soup.paint.warnings;
 }
 
 Renderer::~Renderer() = default;
@@ -78,7 +82,7 @@ Picture Renderer::render(const std::vector<Points>& posed, const RenderOptions& 
   const detail::RayScene scene(state_->soup, posed, map);
   const Camera camera = camera_of(state_->character, posed, options);
   const detail::Lens lens = detail::make_lens(camera, scene, options.width, options.height);
-  picture = detail::trace(scene, state_->soup.looks, lens, {options.wireframe, map, options.background});
+  picture = detail::trace(scene, state_->soup, lens, {options.wireframe, map, options.background});
   detail::draw_overlay(scene, lens, options, picture);
   return picture;
 }

@@ -51,10 +51,16 @@ struct RenderOptions {
   Color background = {0.93f, 0.935f, 0.94f};
 };
 
+/// What surfaces are coloured by.
+enum class Surfaces {
+  clay,     ///< one colour a thing (skin, teeth, ...): shape shows best
+  painted,  ///< the base-colour images and vertex colours that the character has, clay where it has none
+};
+
 /// Draws one character many times: what does not depend on the pose is prepared once.
 class Renderer {
  public:
-  explicit Renderer(const Character& character);
+  explicit Renderer(const Character& character, Surfaces surfaces = Surfaces::clay);
   ~Renderer();
   Renderer(Renderer&&) noexcept;
   Renderer& operator=(Renderer&&) noexcept;
@@ -68,8 +74,12 @@ class Renderer {
   ///           gloss
   /// Colours: a material that has one keeps it; otherwise parts, groups and materials get a look by their
   /// names (skin, eye, iris, teeth, gum, lash); shells that only shade the eye (tear fluid, occlusion) are
-  /// left out.
+  /// left out. Painted: sRGB images through their samplers (wrap, bilinear, KHR_texture_transform) times base-colour factor times
+  /// vertex colours; alpha masks and blends let rays through and cast no shadow.
   Picture render(const std::vector<Points>& posed, const RenderOptions& options = {}) const;
+
+  /// Images that cannot be drawn, and why; what has them keeps its base colour.
+  const std::vector<std::string>& warnings() const;
 
  private:
   struct State;

@@ -7,6 +7,7 @@
 #include "mien/character/sliders.h"
 #include "mien/core/error.h"
 #include "mien/sample/detail/character_form.h"
+#include "mien/sample/detail/paint_skin.h"
 #include "mien/sample/detail/remesh.h"
 
 namespace mien {
@@ -28,6 +29,7 @@ Character make_human() {
   sample::add_shapes(built, form, regions);
   sample::add_rig(built, form, regions);
   complete_sliders(built.character);
+  sample::paint_skin(built, form);
   sample::add_talking_clip(built.character);
   sample::add_constraints(built.character);
   sample::place(built.character, 0.01, Eigen::Quaterniond::Identity(), Eigen::Vector3d::Zero());

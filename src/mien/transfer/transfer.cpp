@@ -12,6 +12,7 @@
 #include "mien/geometry/laplacian.h"
 #include "mien/geometry/moving_similarity.h"
 #include "mien/geometry/thin_plate_spline.h"
+#include "mien/texture/retexture.h"
 #include "mien/transfer/carry_constraints.h"
 #include "mien/transfer/carry_skeleton.h"
 #include "mien/transfer/carry_skin_weights.h"
@@ -415,11 +416,16 @@ void Run::carry_weights() {
 void Run::carry_texture_coordinates() {
   const auto source = detail::skin_uvs(source_, source_pool_, source_surface_);
   if (!source) return;
+  const int material = detail::skin_material(source_, source_pool_, source_surface_);
+  int shared = -1;
   for (std::size_t p = 0; p < result_.parts.size(); ++p) {
     Mesh& mesh = result_.parts[p].mesh;
     if (!mesh.uvs.empty() && !options_.replace_uvs) continue;
     detail::assign_uvs(*source, registration_.guide, target_pool_, target_surface_, static_cast<int>(p),
                        mesh);
+    if (material < 0 || mesh.uvs.empty()) continue;
+    if (shared < 0) shared = copy_material(source_, material, result_.appearance);
+    detail::hang_material(shared, result_.appearance, mesh);
   }
 }
 

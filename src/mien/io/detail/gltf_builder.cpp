@@ -67,37 +67,61 @@ std::vector<std::uint32_t> quantized(std::span<const float> values, int exponent
 
 }  // namespace
 
-std::vector<std::uint8_t> GltfBuilder::pack(std::span<const std::uint8_t> bytes, int stride, Use use) {
+/// As a stream of rows: each byte by its difference from the row before.
+static std::vector<std::uint8_t> packed_rows(std::span<const std::uint8_t> bytes, int stride) {
   const std::size_t rows = bytes.size() / stride;
-  std::vector<std::uint8_t> packed;
-  if (use != Use::indices) {
-    packed.resize(meshopt_encodeVertexBufferBound(rows, stride));
-    packed.resize(meshopt_encodeVertexBuffer(packed.data(), packed.size(), bytes.data(), rows, stride));
-    return packed;
-  }
+  std::vector<std::uint8_t> packed(meshopt_encodeVertexBufferBound(rows, stride));
+  packed.resize(meshopt_encodeVertexBuffer(packed.data(), packed.size(), bytes.data(), rows, stride));
+  return packed;
+}
+
+static std::vector<std::uint8_t> packed_sequence(std::span<const std::uint8_t> bytes, int stride) {
+  const std::size_t rows = bytes.size() / stride;
   std::vector<std::uint32_t> indices(rows, 0);
   for (std::size_t i = 0; i < rows; ++i) std::memcpy(&indices[i], bytes.data() + stride * i, stride);
   const std::size_t largest =
       rows > 0 ? *std::max_element(indices.begin(), indices.end()) + std::size_t{1} : 1;
-  packed.resize(meshopt_encodeIndexSequenceBound(rows, largest));
+  std::vector<std::uint8_t> packed(meshopt_encodeIndexSequenceBound(rows, largest));
   packed.resize(meshopt_encodeIndexSequence(packed.data(), packed.size(), indices.data(), rows));
   return packed;
 }
 
+/// The smallest of the forms that the codec has for these bytes. Whole numbers are often smaller as rows of several: those of
+/// a quad's two triangles beside those of the quad before.
+GltfBuilder::Packed GltfBuilder::pack(std::span<const std::uint8_t> bytes, int stride, Use use) {
+  if (use == Use::attribute) return {packed_rows(bytes, stride), stride, "ATTRIBUTES"};
+  Packed best;
+  if (stride >= 2) best = {packed_sequence(bytes, stride), stride, "INDICES"};
+  for (const int row : {4, 8, 12, 24}) {
+    std::vector<std::uint8_t> rows = packed_rows(bytes, row);
+    if (best.bytes.empty() || rows.size() < best.bytes.size()) best = {std::move(rows), row, "ATTRIBUTES"};
+  }
+  return best;
+}
+
 int GltfBuilder::add_view(std::span<const std::uint8_t> bytes, int stride, Use use) {
   align(buffer_);
+  std::vector<std::uint8_t> whole_rows;  // of any of the lengths that `pack` tries
+  if (compress_ && use == Use::indices) {
+    whole_rows.assign(bytes.begin(), bytes.end());
+    whole_rows.resize((bytes.size() + 23) / 24 * 24, 0);
+    bytes = whole_rows;
+  }
   Json view = {{"buffer", 0}, {"byteLength", bytes.size()}};
-  const bool codec_takes = use == Use::attribute ? stride % 4 == 0 : use != Use::plain && stride >= 2;
-  if (compress_ && codec_takes) {
-    const std::vector<std::uint8_t> packed = pack(bytes, stride, use);
-    const char* mode = use == Use::attribute ? "ATTRIBUTES" : "INDICES";
-    Json extension = {{"buffer", 0},          {"byteOffset", buffer_.size()},   {"byteLength", packed.size()},
-                      {"byteStride", stride}, {"count", bytes.size() / stride}, {"mode", mode}};
+  const bool codec_takes = use == Use::attribute ? stride % 4 == 0 : use == Use::indices;
+  const Packed packed = compress_ && codec_takes && !bytes.empty() ? pack(bytes, stride, use) : Packed{};
+  if (!packed.bytes.empty()) {
+    Json extension = {{"buffer", 0},
+                      {"byteOffset", buffer_.size()},
+                      {"byteLength", packed.bytes.size()},
+                      {"byteStride", packed.stride},
+                      {"count", bytes.size() / packed.stride},
+                      {"mode", packed.mode}};
     view["buffer"] = 1;
     view["byteOffset"] = fallback_size_;
     view["extensions"]["EXT_meshopt_compression"] = extension;
     fallback_size_ += (bytes.size() + 3) / 4 * 4;
-    buffer_.insert(buffer_.end(), packed.begin(), packed.end());
+    buffer_.insert(buffer_.end(), packed.bytes.begin(), packed.bytes.end());
   } else {
     view["byteOffset"] = buffer_.size();
     buffer_.insert(buffer_.end(), bytes.begin(), bytes.end());
@@ -169,20 +193,20 @@ int GltfBuilder::add_attribute(std::span<const std::uint16_t> values, int column
 /// The bytes that floats will take in the file.
 std::size_t GltfBuilder::stored_size(std::span<const float> values, Precision precision) const {
   if (!compress_) return values.size_bytes();
-  if (precision.error <= 0) return pack(bytes_of(values), 12, Use::attribute).size();
+  if (precision.error <= 0) return packed_rows(bytes_of(values), 12).size();
   std::vector<float> decoded;
   const std::vector<std::uint32_t> words = quantized(values, exponent_for(values, precision.error), decoded);
-  return pack(bytes_of(std::span<const std::uint32_t>(words)), 12, Use::attribute).size();
+  return packed_rows(bytes_of(std::span<const std::uint32_t>(words)), 12).size();
 }
 
 int GltfBuilder::add_deltas(int rows, std::span<const int> vertices, const Points& deltas,
                             Precision precision) {
   const std::span<const float> values(deltas.data(), static_cast<std::size_t>(deltas.size()));
   constexpr std::size_t overhead = 256;  // two views and their JSON
-  const std::size_t index_size = rows <= 65535 ? 2 : 4;
-  // A compressed index takes about a byte.
-  const std::size_t sparse_size =
-      stored_size(values, precision) + vertices.size() * (compress_ ? 1 : index_size) + overhead;
+  // Four bytes compress better, as rows of one; an index takes about three bits then, most being one more than the last.
+  const std::size_t index_size = rows <= 65535 && !compress_ ? 2 : 4;
+  const std::size_t index_share = compress_ ? vertices.size() * 3 / 8 : vertices.size() * index_size;
+  const std::size_t sparse_size = stored_size(values, precision) + index_share + overhead;
   if (!vertices.empty()) {
     Points dense = Points::Zero(rows, 3);
     for (std::size_t k = 0; k < vertices.size(); ++k) dense.row(vertices[k]) = deltas.row(k);
@@ -257,7 +281,7 @@ int GltfBuilder::add_numbers(const std::vector<std::uint32_t>& numbers) {
   const std::uint32_t largest = numbers.empty() ? 0 : *std::max_element(numbers.begin(), numbers.end());
   if (largest <= 255) {
     const std::vector<std::uint8_t> narrow(numbers.begin(), numbers.end());
-    return add_accessor(add_view(narrow, 1, Use::plain), type_u8, 1, numbers.size());
+    return add_accessor(add_view(narrow, 1, Use::indices), type_u8, 1, numbers.size());
   }
   if (largest <= 65535) {
     const std::vector<std::uint16_t> narrow(numbers.begin(), numbers.end());

@@ -50,7 +50,12 @@ class GltfBuilder {
  private:
   enum class Use { attribute, indices, plain };
   int add_view(std::span<const std::uint8_t> bytes, int stride, Use use);
-  static std::vector<std::uint8_t> pack(std::span<const std::uint8_t> bytes, int stride, Use use);
+  struct Packed {
+    std::vector<std::uint8_t> bytes;  ///< none: the codec has no form for them
+    int stride = 0;
+    const char* mode = "";
+  };
+  static Packed pack(std::span<const std::uint8_t> bytes, int stride, Use use);
   std::size_t stored_size(std::span<const float> values, Precision precision) const;
   int add_accessor(int view, int component_type, int columns, std::size_t rows);
   void add_bounds(int accessor, std::span<const float> values, int columns, bool with_zero);

@@ -141,9 +141,10 @@ const WrittenRange& MeshWriter::range(std::pair<int, int> rows) {
 
 /// Normals and tangents, where the range has any: what only lines and points use need not.
 void MeshWriter::write_directions(int begin, int end, Json& attributes) {
-  constexpr Precision direction{1.0 / 65536};
   const Mesh& mesh = part_.mesh;
   const bool own = mesh.normals.rows() == mesh.positions.rows();
+  // Computed normals are for other programs' pictures alone: a tenth of a degree will do.
+  const Precision direction{own ? 1.0 / 65536 : 1.0 / 1024};
   const bool has_faces = ranges_.has_faces(begin, end);
   const int last = std::min(end, split_.vertex_count);
   if (has_faces || (own && any_in(mesh.normals, begin, last)))

@@ -7,6 +7,8 @@
 #include <optional>
 #include <string>
 
+#include "mien/core/error.h"
+
 namespace mien::detail {
 namespace {
 
@@ -76,7 +78,40 @@ bool says_nothing(const Eigen::Vector4f& color) {
   return spread < 1e-4f && color[0] > 0.4f;
 }
 
-Look look_of_group(const Character& character, const Part& part, const FaceGroup& group) {
+/// The base-colour image of a material, decoded when it is first asked for; -1: none, or a broken one.
+int texture_of_material(const Character& character, int material, Paint& paint) {
+  const auto known = paint.texture_of_material.find(material);
+  if (known != paint.texture_of_material.end()) return known->second;
+  int& texture = paint.texture_of_material[material] = -1;
+  try {
+    if (const auto use = texture_of(character, material, TextureSlot::base_color)) {
+      paint.textures.emplace_back(character, *use);
+      texture = static_cast<int>(paint.textures.size()) - 1;
+    }
+  } catch (const Error& error) {
+    paint.warnings.push_back(std::string(error.what()) + "; its material keeps its base colour");
+  }
+  return texture;
+}
+
+/// Turns a look by names into one by images and vertex colours where the character has them.
+void apply_paint(const Character& character, const Part& part, int material, Paint& paint, Look& look) {
+  const int texture = material >= 0 ? texture_of_material(character, material, paint) : -1;
+  const bool has_uvs =
+      texture >= 0 && paint.textures[texture].use().uv_set < static_cast<int>(part.mesh.uvs.size());
+  look.painted = !part.mesh.colors.empty() && part.mesh.colors[0].rows() == part.mesh.positions.rows();
+  if (!has_uvs && !look.painted) return;
+  look.albedo = Eigen::Vector3f::Ones();
+  if (material >= 0) {
+    const Eigen::Vector4f& factor = character.appearance.materials[material].base_color;
+    if (factor.allFinite()) look.albedo = factor.head<3>().cwiseMax(0.f).cwiseMin(1.f);
+  }
+  if (!has_uvs) return;
+  look.texture = texture;
+  look.alpha = alpha_of(character, material);
+}
+
+Look look_of_group(const Character& character, const Part& part, const FaceGroup& group, Paint* paint) {
   const auto& materials = character.appearance.materials;
   const bool has_material = group.material >= 0 && group.material < static_cast<int>(materials.size());
   const std::string material = has_material ? materials[group.material].name : std::string();
@@ -86,6 +121,7 @@ Look look_of_group(const Character& character, const Part& part, const FaceGroup
     if (color[3] < 0.1f) look.visible = false;
     if (!says_nothing(color) && color.allFinite()) look.albedo = color.head<3>().cwiseMax(0.f).cwiseMin(1.f);
   }
+  if (paint && look.visible) apply_paint(character, part, has_material ? group.material : -1, *paint, look);
   return look;
 }
 
@@ -95,11 +131,11 @@ float linear(float s) {
 
 }  // namespace
 
-std::vector<Look> looks_of_part(const Character& character, const Part& part) {
-  const Look whole = look_of_group(character, part, {});
+std::vector<Look> looks_of_part(const Character& character, const Part& part, Paint* paint) {
+  const Look whole = look_of_group(character, part, {}, paint);
   std::vector<Look> looks(part.mesh.faces.size(), whole);
   for (const FaceGroup& group : part.mesh.groups) {
-    const Look look = look_of_group(character, part, group);
+    const Look look = look_of_group(character, part, group, paint);
     const int end = std::min(group.face_end, static_cast<int>(looks.size()));
     for (int f = std::max(group.face_begin, 0); f < end; ++f) looks[f] = look;
   }

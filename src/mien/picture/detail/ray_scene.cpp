@@ -1,5 +1,6 @@
 #include "mien/picture/detail/ray_scene.h"
 
+#include <algorithm>
 #include <initializer_list>
 #include <limits>
 #include <string>
@@ -12,12 +13,8 @@ namespace mien::detail {
 namespace {
 
 std::uint16_t index_of(const Look& look, std::vector<Look>& looks) {
-  for (std::size_t i = 0; i < looks.size(); ++i) {
-    const Look& known = looks[i];
-    if (known.albedo == look.albedo && known.gloss == look.gloss && known.sharpness == look.sharpness &&
-        known.visible == look.visible && known.thin == look.thin && known.two_sided == look.two_sided)
-      return static_cast<std::uint16_t>(i);
-  }
+  for (std::size_t i = 0; i < looks.size(); ++i)
+    if (looks[i] == look) return static_cast<std::uint16_t>(i);
   if (looks.size() >= std::numeric_limits<std::uint16_t>::max()) return 0;
   looks.push_back(look);
   return static_cast<std::uint16_t>(looks.size() - 1);
@@ -36,21 +33,54 @@ void check_face(std::span<const int> face, const Part& part) {
           "vertices from 0 to " + std::to_string(static_cast<int>(part.mesh.vertex_count()) - 1));
 }
 
-SoupPart make_part(const Character& character, int p, std::vector<Look>& looks) {
+/// Whether light passes somewhere on a triangle, as far as its corners and a few points inside show.
+bool is_cut_out(const Texture& texture, const CornerUvs& uvs) {
+  static const std::array<Eigen::Vector3f, 7> places{
+      Eigen::Vector3f(1, 0, 0),          Eigen::Vector3f(0, 1, 0),       Eigen::Vector3f(0, 0, 1),
+      Eigen::Vector3f(.34f, .33f, .33f), Eigen::Vector3f(.6f, .2f, .2f), Eigen::Vector3f(.2f, .6f, .2f),
+      Eigen::Vector3f(.2f, .2f, .6f)};
+  return std::any_of(places.begin(), places.end(), [&](const Eigen::Vector3f& at) {
+    return texture.linear(at[0] * uvs[0] + at[1] * uvs[1] + at[2] * uvs[2])[3] < 0.98f;
+  });
+}
+
+/// The look of one triangle: what its image cuts out of it casts no shadow; a corner without a UV has no image.
+Look look_of_triangle(Look look, const Paint& paint, const CornerUvs* uvs) {
+  if (look.texture < 0) return look;
+  if (!uvs) look.texture = -1;
+  if (uvs && look.alpha.mode != AlphaMode::opaque) {
+    look.thin = is_cut_out(paint.textures[look.texture], *uvs);
+    look.two_sided = look.two_sided || look.thin;
+    if (!look.thin) look.alpha = {};
+  }
+  return look;
+}
+
+SoupPart make_part(const Character& character, int p, bool painted, Soup& soup) {
   const Part& part = character.parts[p];
   const Faces& faces = part.mesh.faces;
   const Weld weld = weld_seams(character, p);
-  const std::vector<Look> look_of_face = looks_of_part(character, part);
-  SoupPart made{weld.of, weld.representative, triangulate(weld_faces(faces, weld)), {}, {}, {}};
+  const std::vector<Look> look_of_face = looks_of_part(character, part, painted ? &soup.paint : nullptr);
+  SoupPart made{weld.of, weld.representative, triangulate(weld_faces(faces, weld)), {}, {}, {}, {}, {}};
+  if (painted && !part.mesh.colors.empty()) made.colors = part.mesh.colors[0].leftCols<3>();
+  std::vector<Eigen::Vector2f> uvs;
   std::vector<Eigen::Vector3i> drawn;
-  for (std::size_t f = 0; f < faces.size(); ++f) {
+  for (std::size_t f = 0; part.shown && f < faces.size(); ++f) {
     const auto face = faces[f];
     check_face(face, part);
-    if (!look_of_face[f].visible) continue;
+    const Look& look = look_of_face[f];
+    if (!look.visible) continue;
+    const bool has_uvs =
+        look.texture >= 0 &&
+        corner_uvs(part.mesh, soup.paint.textures[look.texture].use().uv_set, static_cast<int>(f), uvs);
     for (std::size_t c = 2; c < face.size(); ++c) {
       drawn.emplace_back(face[0], face[c - 1], face[c]);
-      made.looks.push_back(index_of(look_of_face[f], looks));
+      const CornerUvs at =
+          has_uvs ? CornerUvs{uvs[0], uvs[c - 1], uvs[c]}
+                  : CornerUvs{Eigen::Vector2f::Zero(), Eigen::Vector2f::Zero(), Eigen::Vector2f::Zero()};
+      made.looks.push_back(index_of(look_of_triangle(look, soup.paint, has_uvs ? &at : nullptr), soup.looks));
       made.edges.push_back(polygon_sides(c, face.size()));
+      made.uvs.push_back(at);
     }
   }
   made.triangles.resize(static_cast<Eigen::Index>(drawn.size()), 3);
@@ -73,10 +103,10 @@ bool has_values(const VertexMap* map, std::size_t part) {
 
 }  // namespace
 
-Soup make_soup(const Character& character) {
+Soup make_soup(const Character& character, bool painted) {
   Soup soup;
   for (std::size_t p = 0; p < character.parts.size(); ++p)
-    soup.parts.push_back(make_part(character, static_cast<int>(p), soup.looks));
+    soup.parts.push_back(make_part(character, static_cast<int>(p), painted, soup));
   return soup;
 }
 
@@ -111,6 +141,7 @@ void RayScene::add_vertices(const SoupPart& part, const Points& posed, const Eig
     positions.emplace_back(((posed.row(v).cast<double>().transpose() - centre) / size).cast<float>());
     normals.emplace_back(part_normals.row(v));
     values.push_back(part_values ? (*part_values)[v] : 0.f);
+    colors.push_back(v < part.colors.rows() ? Eigen::Vector3f(part.colors.row(v)) : Eigen::Vector3f::Ones());
   }
 }
 
@@ -123,6 +154,7 @@ void RayScene::add_triangles(const Soup& soup, const VertexMap* map, bool thin) 
       triangles.emplace_back(part.triangles.row(static_cast<Eigen::Index>(t)).array() + base);
       looks.push_back(part.looks[t]);
       edges.push_back(part.edges[t]);
+      uvs.push_back(part.uvs[t]);
       mapped.push_back(has_values(map, p));
     }
     base += static_cast<int>(part.welded.size());

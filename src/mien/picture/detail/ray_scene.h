@@ -4,6 +4,7 @@
 #include <embree3/rtcore.h>
 
 #include <Eigen/Core>
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -12,6 +13,9 @@
 #include "mien/picture/render.h"
 
 namespace mien::detail {
+
+/// UVs of a triangle's corners, v up.
+using CornerUvs = std::array<Eigen::Vector2f, 3>;
 
 /// What does not depend on the pose.
 struct SoupPart {
@@ -22,12 +26,16 @@ struct SoupPart {
   std::vector<std::uint16_t> looks;  ///< per drawn triangle: index into Soup::looks
   std::vector<std::uint8_t>
       edges;  ///< per drawn triangle: bit k set when the side opposite corner k is a polygon's
+  std::vector<CornerUvs> uvs;  ///< per drawn triangle, or none in a part without images
+  Points colors;               ///< #V, linear RGB, or no rows
 };
 struct Soup {
   std::vector<SoupPart> parts;
   std::vector<Look> looks;
+  Paint paint;
 };
-Soup make_soup(const Character& character);
+/// `painted`: with the character's images and vertex colours.
+Soup make_soup(const Character& character, bool painted);
 
 /// One pose, in Embree. Scene space: the middle of the box at the origin, its diagonal 1; floats are finest
 /// there.
@@ -49,10 +57,12 @@ class RayScene {
   double size = 1;                                   ///< diagonal of the box, model units
   std::vector<Eigen::Vector3f> positions, normals;
   std::vector<float> values;               ///< per vertex, or empty
+  std::vector<Eigen::Vector3f> colors;     ///< per vertex, white where a part has none
   std::vector<char> mapped;                ///< per triangle: drawn by `values`
   std::vector<Eigen::Vector3i> triangles;  ///< the solid ones, then the thin ones
   std::vector<std::uint16_t> looks;
   std::vector<std::uint8_t> edges;
+  std::vector<CornerUvs> uvs;  ///< per triangle
 
  private:
   void add_vertices(const SoupPart& part, const Points& posed, const Eigen::VectorXf* values);

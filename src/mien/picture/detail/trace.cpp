@@ -76,13 +76,20 @@ int cell_of(int x, int y) {
 
 class Tracer {
  public:
-  Tracer(const RayScene& scene, const std::vector<Look>& looks, const Lens& lens, const TraceOptions& options)
-      : scene_(scene), looks_(looks), lens_(lens), options_(options), lights_(make_lights(lens)) {}
+  Tracer(const RayScene& scene, const Soup& soup, const Lens& lens, const TraceOptions& options)
+      : scene_(scene),
+        looks_(soup.looks),
+        textures_(soup.paint.textures),
+        lens_(lens),
+        options_(options),
+        lights_(make_lights(lens)) {}
 
   Gathered gather(int x, int y) const;
 
  private:
-  void see_through_lashes(RTCRayHit16& rays, int cell) const;
+  void see_through(RTCRayHit16& rays, int cell) const;
+  float opacity(const RTCRayHit16& rays, int s) const;
+  Eigen::Vector4f texture_color(const Look& look, int triangle, const Vec& corners) const;
   bool surface(const RTCRayHit16& rays, int s, Hit& hit) const;
   Vec base_color(const Look& look, int triangle, const Vec& corners) const;
   bool on_edge(int triangle, const Vec& corners, float depth) const;
@@ -91,14 +98,27 @@ class Tracer {
 
   const RayScene& scene_;
   const std::vector<Look>& looks_;
+  const std::vector<Texture>& textures_;
   const Lens& lens_;
   const TraceOptions& options_;
   Lights lights_;
 };
 
+Eigen::Vector4f Tracer::texture_color(const Look& look, int triangle, const Vec& corners) const {
+  const CornerUvs& uv = scene_.uvs[triangle];
+  return textures_[look.texture].linear(corners[0] * uv[0] + corners[1] * uv[1] + corners[2] * uv[2]);
+}
+
 Vec Tracer::base_color(const Look& look, int triangle, const Vec& corners) const {
-  if (!scene_.mapped[triangle]) return look.albedo;
   const Eigen::Vector3i& t = scene_.triangles[triangle];
+  if (!scene_.mapped[triangle]) {
+    Vec color = look.albedo;
+    if (look.texture >= 0) color = color.cwiseProduct(texture_color(look, triangle, corners).head<3>());
+    if (look.painted)
+      color = color.cwiseProduct(corners[0] * scene_.colors[t[0]] + corners[1] * scene_.colors[t[1]] +
+                                 corners[2] * scene_.colors[t[2]]);
+    return color;
+  }
   const float value =
       corners[0] * scene_.values[t[0]] + corners[1] * scene_.values[t[1]] + corners[2] * scene_.values[t[2]];
   const VertexMap& map = *options_.map;
@@ -217,22 +237,38 @@ void Tracer::shade(const std::array<Hit, samples>& hits, const std::array<int, s
   }
 }
 
-/// Lashes are modelled as solid cards whose texture would show hairs: more than half of the rays pass.
-void Tracer::see_through_lashes(RTCRayHit16& rays, int cell) const {
-  alignas(64) std::array<int, samples> passes;
-  bool any = false;
-  for (int s = 0; s < samples; ++s) {
-    const bool thin = rays.hit.geomID[s] == 1;
-    passes[s] = thin && (s * 7 + cell * 3) % samples >= 7 ? -1 : 0;
-    if (!passes[s]) continue;
-    any = true;
-    rays.ray.tfar[s] = std::numeric_limits<float>::infinity();
-    rays.hit.geomID[s] = RTC_INVALID_GEOMETRY_ID;
+/// How much of the light a thin thing keeps. Lashes are modelled as solid cards whose texture would show hairs: without one,
+/// more than half passes.
+float Tracer::opacity(const RTCRayHit16& rays, int s) const {
+  const int triangle = scene_.triangle_of(rays.hit.geomID[s], rays.hit.primID[s]);
+  const Look& look = looks_[scene_.looks[triangle]];
+  if (look.texture < 0 || look.alpha.mode == AlphaMode::opaque) return 7.f / samples;
+  const Vec corners(1 - rays.hit.u[s] - rays.hit.v[s], rays.hit.u[s], rays.hit.v[s]);
+  const float alpha = texture_color(look, triangle, corners)[3];
+  return look.alpha.mode == AlphaMode::blend ? alpha : alpha < look.alpha.cutoff ? 0.f : 1.f;
+}
+
+/// Rays go on behind thin things, each at its own opacity: the sixteen of a pixel show the mixture. More than eight layers
+/// are solid.
+void Tracer::see_through(RTCRayHit16& rays, int cell) const {
+  for (int layer = 0; layer < 8; ++layer) {
+    alignas(64) std::array<int, samples> passes;
+    bool any = false;
+    for (int s = 0; s < samples; ++s) {
+      const bool thin = rays.hit.geomID[s] == 1;
+      const float stratum = (static_cast<float>((s * 7 + cell * 3) % samples) + 0.5f) / samples;
+      passes[s] = thin && stratum > opacity(rays, s) ? -1 : 0;
+      if (!passes[s]) continue;
+      any = true;
+      rays.ray.tnear[s] = rays.ray.tfar[s] + offset;
+      rays.ray.tfar[s] = std::numeric_limits<float>::infinity();
+      rays.hit.geomID[s] = RTC_INVALID_GEOMETRY_ID;
+    }
+    if (!any) return;
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    rtcIntersect16(passes.data(), scene_.all(), &context, &rays);
   }
-  if (!any) return;
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  rtcIntersect16(passes.data(), scene_.solid(), &context, &rays);
 }
 
 Gathered Tracer::gather(int x, int y) const {
@@ -250,7 +286,7 @@ Gathered Tracer::gather(int x, int y) const {
   rtcInitIntersectContext(&context);
   context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
   rtcIntersect16(valid.data(), scene_.all(), &context, &rays);
-  see_through_lashes(rays, cell_of(x, y));
+  see_through(rays, cell_of(x, y));
   std::array<Hit, samples> hits;
   bool any = false;
   for (int s = 0; s < samples; ++s) {
@@ -351,10 +387,9 @@ void compose_pixel(const Band& band, const Lens& lens, int x, int y, Picture& pi
 
 }  // namespace
 
-Picture trace(const RayScene& scene, const std::vector<Look>& looks, const Lens& lens,
-              const TraceOptions& options) {
+Picture trace(const RayScene& scene, const Soup& soup, const Lens& lens, const TraceOptions& options) {
   Picture picture = blank_picture(lens.width, lens.height, options.background);
-  const Tracer tracer(scene, looks, lens, options);
+  const Tracer tracer(scene, soup, lens, options);
   const int rows = std::max(16, (1 << 20) / lens.width);
   for (int begin = 0; begin < lens.height; begin += rows) {
     const int end = std::min(begin + rows, lens.height);

@@ -13,7 +13,6 @@ struct TraceOptions {
   Color background;
 };
 
-Picture trace(const RayScene& scene, const std::vector<Look>& looks, const Lens& lens,
-              const TraceOptions& options);
+Picture trace(const RayScene& scene, const Soup& soup, const Lens& lens, const TraceOptions& options);
 
 }  // namespace mien::detail

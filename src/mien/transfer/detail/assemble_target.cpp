@@ -2,6 +2,9 @@
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
+#include <map>
+
+#include "mien/texture/texture.h"
 
 namespace mien::detail {
 namespace {
@@ -221,6 +224,45 @@ void assign_uvs(const SkinUvs& source, const PointsD& guide, const Pool& pool, c
     for (std::size_t c = 0; c < mesh.faces[f].size() && is_skin[f]; ++c)
       set.corners[at(mesh.faces.offset(f)) + c] = carried.corners[next++];
   mesh.uvs.assign(1, std::move(set));
+}
+
+int skin_material(const Character& source, const Pool& pool, const PoolSurface& skin) {
+  std::map<int, std::size_t> count;
+  for (const int t : skin.triangles)
+    for (const FaceGroup& group : source.parts[at(pool.triangle_part[at(t)])].mesh.groups)
+      if (pool.triangle_face[at(t)] >= group.face_begin && pool.triangle_face[at(t)] < group.face_end)
+        ++count[group.material];
+  int best = -1;
+  std::size_t most = 0;
+  for (const auto& [material, triangles] : count)
+    if (triangles > most && texture_of(source, material, TextureSlot::base_color)) {
+      best = material;
+      most = triangles;
+    }
+  return best;
+}
+
+void hang_material(int material, const Appearance& looks, Mesh& mesh) {
+  const UvSet& uv = mesh.uvs.front();
+  const auto has_uvs = [&](int f) {
+    return uv.corners.empty() || uv.corners[at(mesh.faces.offset(at(f)))] >= 0;
+  };
+  const int faces = static_cast<int>(mesh.faces.size());
+  if (mesh.groups.empty()) {
+    for (int f = 0; f < faces; ++f) {
+      const int wanted = has_uvs(f) ? material : -1;
+      if (mesh.groups.empty() || mesh.groups.back().material != wanted)
+        mesh.groups.push_back({"", wanted, f, f, 0, static_cast<int>(mesh.vertex_count())});
+      mesh.groups.back().face_end = f + 1;
+    }
+    return;
+  }
+  for (FaceGroup& group : mesh.groups) {
+    int with = 0;
+    for (int f = group.face_begin; f < group.face_end; ++f) with += has_uvs(f);
+    const bool plain = group.material < 0 || looks.materials[at(group.material)].carried.empty();
+    if (plain && 2 * with > group.face_end - group.face_begin) group.material = material;
+  }
 }
 
 }  // namespace mien::detail

@@ -43,4 +43,10 @@ std::optional<SkinUvs> skin_uvs(const Character& source, const Pool& pool, const
 void assign_uvs(const SkinUvs& source, const PointsD& guide, const Pool& pool, const PoolSurface& skin,
                 int part, Mesh& mesh);
 
+/// The material with a base-colour image that most triangles of the source's skin have; -1: none.
+int skin_material(const Character& source, const Pool& pool, const PoolSurface& skin);
+
+/// Puts a material on the faces that have UVs, where nothing but plain colours was.
+void hang_material(int material, const Appearance& looks, Mesh& mesh);
+
 }  // namespace mien::detail
