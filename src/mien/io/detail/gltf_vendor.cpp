@@ -293,6 +293,7 @@ Json vendor_root(const Character& character, GltfBuilder& builder) {
   }
   write_sliders(character, vendor);
   write_wires(character, builder, vendor);
+  write_objects(character, builder, vendor);
   if (!character.name.empty()) vendor["name"] = character.name;
   if (!vendor.empty()) vendor["version"] = 1;
   return vendor;
@@ -317,6 +318,7 @@ void read_vendor(GltfDocument& document, const std::vector<PartSource>& sources,
   character.name = vendor.text_or("name", "");
   read_sliders(vendor, character);
   read_wires(vendor, document, sources, character);
+  read_objects(vendor, document, sources, character);
   for (const JsonObject& source : vendor.objects("landmarks"))
     character.landmarks.push_back({source.text("name"), read_vendor_point(source, sources, character)});
   for (const JsonObject& source : vendor.objects("curves")) {
