@@ -16,6 +16,7 @@
 #include "mien/io/landmark_file.h"
 #include "mien/io/load.h"
 #include "mien/io/weights_file.h"
+#include "mien/picture/object_lines.h"
 #include "mien/picture/region.h"
 #include "mien/picture/sheet.h"
 
@@ -28,7 +29,7 @@ struct Arguments {
   std::string clip, view = std::string(name_of(View::front)), zoom;
   std::vector<int> size;
   double time = 0;
-  bool sheet = false, wireframe = false, landmarks = false;
+  bool sheet = false, wireframe = false, landmarks = false, objects = false;
 };
 
 void set_shape(const Character& character, const std::string& argument, ShapeWeights& weights) {
@@ -91,8 +92,6 @@ void add_landmarks(const Character& character, const std::vector<Points>& posed,
   const auto at = [&](const SurfacePoint& point) {
     return position_of(character.parts[point.part].mesh, posed[point.part], point);
   };
-  options.markers.clear();
-  options.polylines.clear();
   for (const Landmark& landmark : character.landmarks)
     options.markers.push_back({at(landmark.at), landmark.name, {0.85f, 0.1f, 0.1f}});
   for (const LandmarkCurve& curve : character.curves) {
@@ -102,10 +101,20 @@ void add_landmarks(const Character& character, const std::vector<Points>& posed,
   }
 }
 
+/// What is drawn over the face in this pose.
+void add_overlay(const Character& character, const Arguments& arguments, const Pose& pose,
+                 const std::vector<Points>& posed, RenderOptions& options) {
+  options.markers.clear();
+  options.polylines.clear();
+  if (arguments.objects) options.polylines = object_lines(character, pose);
+  if (arguments.landmarks) add_landmarks(character, posed, options);
+}
+
 Picture draw_still(const Character& character, const Arguments& arguments, const Progress& progress) {
   RenderOptions options = options_of(character, arguments);
-  const std::vector<Points> posed = evaluate(character, pose_of(character, arguments));
-  if (arguments.landmarks) add_landmarks(character, posed, options);
+  const Pose pose = pose_of(character, arguments);
+  const std::vector<Points> posed = evaluate(character, pose);
+  add_overlay(character, arguments, pose, posed, options);
   report_progress(progress, "render", 0);
   Picture picture = render(character, posed, options);
   report_progress(progress, "render", 1);
@@ -122,7 +131,7 @@ Picture draw_sheet(const Character& character, const Arguments& arguments, const
     Pose pose = pose_of(character, arguments);
     if (s > 0) pose.shape_weights.values[static_cast<Eigen::Index>(s - 1)] = 1;
     const std::vector<Points> posed = evaluate(character, pose);
-    if (arguments.landmarks) add_landmarks(character, posed, options);
+    add_overlay(character, arguments, pose, posed, options);
     cells.push_back({s == 0 ? "neutral" : character.shapes[s - 1].name, renderer.render(posed, options), {}});
     report_progress(progress, "render", static_cast<double>(s + 1) / static_cast<double>(count + 1));
   }
@@ -194,6 +203,9 @@ void add_render(CLI::App& app, Common& common) {
       ->type_name("mouth|eyes");
   command->add_flag("--wireframe", arguments->wireframe, "Draw the edges of the polygons");
   command->add_flag("--landmarks", arguments->landmarks, "Draw the character's landmarks and curves");
+  command->add_flag("--objects", arguments->objects,
+                    "Draw the influence objects: curves green, surfaces red, lattices blue, meshes brown, "
+                    "clusters and locators violet");
   command->add_option("--landmarks-file", arguments->landmarks_file, "Draw the landmarks of this file")
       ->each([arguments](const std::string&) { arguments->landmarks = true; });
   command->callback([arguments, &common] { run(*arguments, common); });
