@@ -41,6 +41,7 @@ void add_split(CLI::App& app, Common& common);
 void add_mirror(CLI::App& app, Common& common);
 void add_sample(CLI::App& app, Common& common);
 void add_wires(CLI::App& app, Common& common);
+void add_objects(CLI::App& app, Common& common);
 void add_blend(CLI::App& app, Common& common);
 void add_pose(CLI::App& app, Common& common);
 void add_attenuate(CLI::App& app, Common& common);

@@ -9,6 +9,7 @@
 #include "mien/character/validate.h"
 #include "mien/core/error.h"
 #include "mien/io/load.h"
+#include "objects.h"
 #include "rigging.h"
 
 namespace mien::cli {
@@ -125,6 +126,7 @@ json describe(const std::string& file, const Character& character) {
     for (const int joint : skin.joints)
       if (joint >= 0 && joint < static_cast<int>(character.nodes.size()) && joints.insert(joint).second)
         result["joints"].push_back(character.nodes[joint].name);
+  result["objects"] = describe_objects(character);
   result["constraints"] = describe_constraints(character);
   result["controls"] = describe_controls(character);
   for (const Clip& clip : character.clips) result["clips"].push_back(describe_clip(clip));
@@ -212,6 +214,7 @@ std::string as_text(const json& result) {
   text += slider_rows(result);
   text += fmt::format("  joints     {}{}\n", result["joints"].size(),
                       result["joints"].empty() ? "" : ": " + joined(result["joints"]));
+  text += object_rows(result["objects"]);
   text += constraint_rows(result["constraints"]) + control_rows(result["controls"]);
   for (const json& clip : result["clips"])
     text += fmt::format("  clip       {}: {:.3f} s, {} channels, {} keys\n", clip["name"].get<std::string>(),

@@ -28,6 +28,7 @@ int main(int argc, char** argv) {
   mien::cli::add_landmarks(app, common);
   mien::cli::add_transfer(app, common);
   mien::cli::add_wires(app, common);
+  mien::cli::add_objects(app, common);
   mien::cli::add_blend(app, common);
   mien::cli::add_render(app, common);
   mien::cli::add_evaluate(app, common);

@@ -16,6 +16,7 @@
 #include "mien/io/landmark_file.h"
 #include "mien/io/load.h"
 #include "mien/io/weights_file.h"
+#include "mien/picture/object_lines.h"
 #include "mien/picture/region.h"
 #include "mien/picture/sheet.h"
 
@@ -28,7 +29,7 @@ struct Arguments {
   std::string clip, view = std::string(name_of(View::front)), zoom;
   std::vector<int> size;
   double time = 0;
-  bool sheet = false, wireframe = false, landmarks = false, plain = false, textured = false;
+  bool sheet = false, wireframe = false, landmarks = false, objects = false, plain = false, textured = false;
   /// A still shows the face as it looks; a sheet is there to judge shapes by, which images hide.
   Surfaces surfaces() const { return plain || (sheet && !textured) ? Surfaces::clay : Surfaces::painted; }
 };
@@ -93,8 +94,6 @@ void add_landmarks(const Character& character, const std::vector<Points>& posed,
   const auto at = [&](const SurfacePoint& point) {
     return position_of(character.parts[point.part].mesh, posed[point.part], point);
   };
-  options.markers.clear();
-  options.polylines.clear();
   for (const Landmark& landmark : character.landmarks)
     options.markers.push_back({at(landmark.at), landmark.name, {0.85f, 0.1f, 0.1f}});
   for (const LandmarkCurve& curve : character.curves) {
@@ -110,10 +109,20 @@ struct Drawn {
   std::vector<std::string> warnings;
 };
 
+/// What is drawn over the face in this pose.
+void add_overlay(const Character& character, const Arguments& arguments, const Pose& pose,
+                 const std::vector<Points>& posed, RenderOptions& options) {
+  options.markers.clear();
+  options.polylines.clear();
+  if (arguments.objects) options.polylines = object_lines(character, pose);
+  if (arguments.landmarks) add_landmarks(character, posed, options);
+}
+
 Drawn draw_still(const Character& character, const Arguments& arguments, const Progress& progress) {
   RenderOptions options = options_of(character, arguments);
-  const std::vector<Points> posed = evaluate(character, pose_of(character, arguments));
-  if (arguments.landmarks) add_landmarks(character, posed, options);
+  const Pose pose = pose_of(character, arguments);
+  const std::vector<Points> posed = evaluate(character, pose);
+  add_overlay(character, arguments, pose, posed, options);
   report_progress(progress, "render", 0);
   const Renderer renderer(character, arguments.surfaces());
   Drawn drawn{renderer.render(posed, options), renderer.warnings()};
@@ -131,7 +140,7 @@ Drawn draw_sheet(const Character& character, const Arguments& arguments, const P
     Pose pose = pose_of(character, arguments);
     if (s > 0) pose.shape_weights.values[static_cast<Eigen::Index>(s - 1)] = 1;
     const std::vector<Points> posed = evaluate(character, pose);
-    if (arguments.landmarks) add_landmarks(character, posed, options);
+    add_overlay(character, arguments, pose, posed, options);
     cells.push_back({s == 0 ? "neutral" : character.shapes[s - 1].name, renderer.render(posed, options), {}});
     report_progress(progress, "render", static_cast<double>(s + 1) / static_cast<double>(count + 1));
   }
@@ -211,6 +220,9 @@ void add_render(CLI::App& app, Common& common) {
       ->excludes(plain);
   command->add_flag("--wireframe", arguments->wireframe, "Draw the edges of the polygons");
   command->add_flag("--landmarks", arguments->landmarks, "Draw the character's landmarks and curves");
+  command->add_flag("--objects", arguments->objects,
+                    "Draw the influence objects: curves green, surfaces red, lattices blue, meshes brown, "
+                    "clusters and locators violet");
   command->add_option("--landmarks-file", arguments->landmarks_file, "Draw the landmarks of this file")
       ->each([arguments](const std::string&) { arguments->landmarks = true; });
   command->callback([arguments, &common] { run(*arguments, common); });

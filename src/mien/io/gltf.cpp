@@ -425,7 +425,8 @@ void write_gltf(const Character& character, const std::filesystem::path& path, c
   try {
     require_valid(character);
     GltfBuilder builder(options.compress);
-    Json root = character_json(character, builder);
+    const std::optional<Character> listed = detail::with_shapes_of_objects(character);
+    Json root = character_json(listed ? *listed : character, builder);
     std::vector<std::uint8_t>& buffer = builder.buffer();
     buffer.resize((buffer.size() + 3) / 4 * 4);
     if (!buffer.empty()) root["buffers"].push_back({{"byteLength", buffer.size()}});

@@ -22,10 +22,11 @@ struct Marker {
   Color color = {0.85f, 0.1f, 0.1f};
 };
 
-/// A line drawn on the surface. Hidden stretches are left out.
+/// A line drawn on the surface.
 struct Polyline {
   std::vector<Eigen::Vector3d> points;  ///< model space
   Color color = {0.1f, 0.3f, 0.8f};
+  bool hidden = false;  ///< stretches behind the surface are drawn too; false: left out
 };
 
 /// A number a vertex, drawn as colour in place of the part's own: error, weight and fold maps.

@@ -33,6 +33,8 @@ Character make_human() {
   sample::add_talking_clip(built.character);
   sample::add_constraints(built.character);
   sample::place(built.character, 0.01, Eigen::Quaterniond::Identity(), Eigen::Vector3d::Zero());
+  sample::add_influence_objects(built.character);
+  sample::move_objects_while_talking(built.character);
   return std::move(built.character);
 }
 

@@ -32,7 +32,12 @@ void read_constraints(const JsonObject& vendor, Character& character);
 void read_controls(const JsonObject& vendor, Character& character);
 /// What a channel moves of a wire; its keys are left out.
 Channel read_wire_channel(const JsonObject& source, const Character& character);
-/// N-gons, seams, groups, landmarks and curves from the vendor extension; sliders and wires too.
+/// Influence objects and what shapes do to them, from the file's vendor extension.
+void read_objects(const JsonObject& vendor, GltfDocument& document, const std::vector<PartSource>& sources,
+                  Character& character);
+/// Which control point of an object a channel moves; its keys are left out.
+Channel read_object_channel(const JsonObject& source, const Character& character);
+/// N-gons, seams, groups, landmarks and curves from the vendor extension; sliders, wires and objects too.
 void read_vendor(GltfDocument& document, const std::vector<PartSource>& sources, Character& character);
 
 /// The spline surface or subdivision that a part's vertices control, from its mesh's vendor extension.

@@ -29,6 +29,7 @@ class ClipReader {
   void read_channel(const JsonObject& channel, const std::vector<JsonObject>& samplers, Clip& clip);
   void read_transform(Channel channel, const JsonObject& sampler, Clip& clip);
   void read_vendor(const JsonObject& animation, Clip& clip);
+  void read_keys(const JsonObject& source, Channel& channel);
   void read_weights(const Channel& channel, const JsonObject& sampler, Clip& clip);
   std::size_t accessors() const { return document_.count("accessors"); }
 
@@ -47,6 +48,12 @@ Clip ClipReader::read(const JsonObject& animation) {
   return clip;
 }
 
+void ClipReader::read_keys(const JsonObject& source, Channel& channel) {
+  channel.interpolation = interpolation_of(source);
+  channel.times = document_.floats(source.index("input", accessors()), 1).values;
+  channel.values = document_.floats(source.index("output", accessors()), channel.width()).values;
+}
+
 /// The channels of shapes that the clip does not animate itself are there for other programs.
 void ClipReader::read_vendor(const JsonObject& animation, Clip& clip) {
   if (!animation.has("extensions") || !animation.object("extensions").has(vendor_extension)) return;
@@ -61,9 +68,12 @@ void ClipReader::read_vendor(const JsonObject& animation, Clip& clip) {
   if (vendor.truth_or("still", false)) clip.channels.clear();  // there for glTF's sake alone
   for (const JsonObject& source : vendor.objects("wires")) {
     Channel channel = read_wire_channel(source, character_);
-    channel.interpolation = interpolation_of(source);
-    channel.times = document_.floats(source.index("input", accessors()), 1).values;
-    channel.values = document_.floats(source.index("output", accessors()), channel.width()).values;
+    read_keys(source, channel);
+    clip.channels.push_back(std::move(channel));
+  }
+  for (const JsonObject& source : vendor.objects("objects")) {
+    Channel channel = read_object_channel(source, character_);
+    read_keys(source, channel);
     clip.channels.push_back(std::move(channel));
   }
   for (const JsonObject& source : vendor.objects("sliders")) {
@@ -73,9 +83,7 @@ void ClipReader::read_vendor(const JsonObject& animation, Clip& clip) {
     if (channel.slider < 0)
       throw io_error(source.place_of("slider"), fmt::format("names {}", source.text("slider").substr(0, 100)),
                      "name one of the sliders");
-    channel.interpolation = interpolation_of(source);
-    channel.times = document_.floats(source.index("input", accessors()), 1).values;
-    channel.values = document_.floats(source.index("output", accessors()), 1).values;
+    read_keys(source, channel);
     clip.channels.push_back(std::move(channel));
   }
 }

@@ -180,7 +180,7 @@ Clip with_shape_channels(const Character& character, const Clip& clip) {
   Clip plain{clip.name, {}, clip.carried};
   std::vector<const Channel*> others;
   for (const Channel& channel : clip.channels) {
-    if (channel.moves_wire()) continue;
+    if (channel.moves_wire() || channel.property == Channel::Property::object_control) continue;
     if (channel.property != Channel::Property::slider) {
       plain.channels.push_back(channel);
     } else if (drives_one_shape(character, channel.slider)) {

@@ -295,6 +295,7 @@ Json vendor_root(const Character& character, GltfBuilder& builder) {
   write_wires(character, builder, vendor);
   write_constraints(character, vendor);
   write_controls(character, vendor);
+  write_objects(character, builder, vendor);
   if (!character.name.empty()) vendor["name"] = character.name;
   if (!vendor.empty()) vendor["version"] = 1;
   return vendor;
@@ -321,6 +322,7 @@ void read_vendor(GltfDocument& document, const std::vector<PartSource>& sources,
   read_wires(vendor, document, sources, character);
   read_constraints(vendor, character);
   read_controls(vendor, character);
+  read_objects(vendor, document, sources, character);
   for (const JsonObject& source : vendor.objects("landmarks"))
     character.landmarks.push_back({source.text("name"), read_vendor_point(source, sources, character)});
   for (const JsonObject& source : vendor.objects("curves")) {

@@ -8,6 +8,7 @@
 #include "mien/io/detail/gltf_read.h"
 #include "mien/io/detail/gltf_write.h"
 #include "mien/io/detail/point.h"
+#include "mien/io/detail/rows_json.h"
 
 // Wires in the MIEN_character extension: curves as JSON numbers, which keep doubles, what is long in accessors. A wire's binding to
 // a mesh that another program changed no longer fits; it is left out, and so are moves of such a wire.
@@ -16,13 +17,6 @@ namespace mien::detail {
 namespace {
 
 constexpr int most_controls = 100000;
-
-Json numbers_json(const PointsD& rows) {
-  Json json = Json::array();
-  for (Eigen::Index r = 0; r < rows.rows(); ++r)
-    for (int k = 0; k < 3; ++k) json.push_back(rows(r, k));
-  return json;
-}
 
 Json binding_json(const WireBinding& binding, GltfBuilder& builder) {
   const std::vector<std::uint32_t> vertices(binding.vertices.begin(), binding.vertices.end());
@@ -35,7 +29,7 @@ Json binding_json(const WireBinding& binding, GltfBuilder& builder) {
 Json wire_json(const Wire& wire, GltfBuilder& builder) {
   Json json = {{"name", wire.name},
                {"feature", wire.feature},
-               {"controls", numbers_json(wire.curve.controls)},
+               {"controls", rows_json(wire.curve.controls)},
                {"knots", wire.curve.knots},
                {"ranges", wire.ranges},
                {"localizing", wire.localizing},
@@ -67,13 +61,6 @@ Json moves_json(const Character& character, const Shape& shape, GltfBuilder& bui
   return {{"shape", shape.name}, {"wires", std::move(wires)}, {"values", builder.add_floats(values, 1)}};
 }
 
-PointsD read_rows(const std::vector<double>& numbers) {
-  PointsD rows(static_cast<Eigen::Index>(numbers.size() / 3), 3);
-  for (Eigen::Index r = 0; r < rows.rows(); ++r)
-    for (int k = 0; k < 3; ++k) rows(r, k) = numbers[static_cast<std::size_t>(3 * r + k)];
-  return rows;
-}
-
 WireBinding read_binding(const JsonObject& source, GltfDocument& document, int part) {
   const std::size_t accessors = document.count("accessors");
   WireBinding binding;
@@ -101,7 +88,7 @@ Wire read_wire(const JsonObject& source, GltfDocument& document, const std::vect
   Wire wire;
   wire.name = source.text("name");
   wire.feature = source.text_or("feature", wire.name);
-  wire.curve.controls = read_rows(source.numbers("controls"));
+  wire.curve.controls = rows_of(source.numbers("controls"));
   wire.curve.knots = source.numbers("knots");
   try {
     require_valid(wire.curve);

@@ -1,6 +1,7 @@
 #pragma once
 /// The steps of writing a Character as glTF; write_gltf runs them in this order.
 
+#include <optional>
 #include <set>
 #include <utility>
 #include <vector>
@@ -58,6 +59,12 @@ void write_constraints(const Character& character, Json& vendor);
 void write_controls(const Character& character, Json& vendor);
 /// A channel that moves a wire, for the vendor extension of its animation.
 Json wire_channel_json(const Character& character, const Channel& channel, GltfBuilder& builder);
+/// Adds influence objects and what shapes do to them to the file's vendor extension.
+void write_objects(const Character& character, GltfBuilder& builder, Json& vendor);
+/// A channel that moves a control point of an object, for the vendor extension of its animation.
+Json object_channel_json(const Character& character, const Channel& channel, GltfBuilder& builder);
+/// The character with shapes that move objects alone listed on its first part, where glTF can name them; nothing when it has none.
+std::optional<Character> with_shapes_of_objects(const Character& character);
 /// Adds sliders, correctives and expressions to the file's vendor extension unless they are one plain slider a
 /// shape, which every glTF has.
 void write_sliders(const Character& character, Json& vendor);

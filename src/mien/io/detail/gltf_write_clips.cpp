@@ -232,6 +232,9 @@ Json ClipWriter::vendor(const Clip& clip) const {
   for (const Channel& channel : clip.channels)
     if (channel.moves_wire() && !channel.times.empty())
       vendor["wires"].push_back(wire_channel_json(character_, channel, builder_));
+  for (const Channel& channel : clip.channels)
+    if (channel.property == Channel::Property::object_control && !channel.times.empty())
+      vendor["objects"].push_back(object_channel_json(character_, channel, builder_));
   std::vector<bool> own(character_.shapes.size(), false);
   for (const Channel& channel : clip.channels)
     if (channel.property == Channel::Property::shape_weight) own[channel.shape] = true;
@@ -278,7 +281,9 @@ Json ClipWriter::write(const Clip& whole) {
   animation["samplers"] = std::move(samplers_);
   animation["channels"] = std::move(channels_);
   Json members = vendor(whole);
-  if (animation["channels"].empty() && members.contains("wires") && character_.parts.at(0).shown) {
+  const bool moves_alone = members.contains("wires") || members.contains("objects");
+  if (animation["channels"].empty() && moves_alone && !character_.parts.empty() &&
+      character_.parts[0].shown) {
     hold_still(whole);
     animation["samplers"] = std::move(samplers_);
     animation["channels"] = std::move(channels_);

@@ -19,10 +19,16 @@ Eigen::Vector3f in_scene(const RayScene& scene, const Eigen::Vector3d& position)
   return ((position - scene.centre) / scene.size).cast<float>();
 }
 
+/// Whether a point lies before the lens.
+bool lens_sees(const Lens& lens, const Eigen::Vector3f& point) {
+  const Eigen::Vector3f way = point - lens.eye;
+  return way.dot(lens.back) < 0 && std::isfinite(way.norm());
+}
+
 bool visible(const RayScene& scene, const Lens& lens, const Eigen::Vector3f& point) {
   const Eigen::Vector3f way = point - lens.eye;
   const float distance = way.norm();
-  if (!(way.dot(lens.back) < 0) || !std::isfinite(distance)) return false;
+  if (!lens_sees(lens, point)) return false;
   RTCRay ray{};
   ray.org_x = lens.eye.x();
   ray.org_y = lens.eye.y();
@@ -51,7 +57,7 @@ void draw_line(const RayScene& scene, const Lens& lens, const Polyline& line, Ca
     const int steps = std::isfinite(pixels) ? std::clamp(static_cast<int>(pixels / 2), 1, 4096) : 1;
     for (int k = i == 0 ? 0 : 1; k <= steps; ++k) {
       const Eigen::Vector3f p = a + (b - a) * (static_cast<float>(k) / static_cast<float>(steps));
-      if (visible(scene, lens, p))
+      if (line.hidden ? lens_sees(lens, p) : visible(scene, lens, p))
         run.push_back(lens.project(p).head<2>().cast<double>());
       else
         flush();

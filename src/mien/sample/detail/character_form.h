@@ -67,6 +67,10 @@ void add_rig(BuiltCharacter& built, const CharacterForm& form, const FaceRegions
 void add_talking_clip(Character& character);
 /// Limits on the turns of jaw and eyes; the talking clip stays within them.
 void add_constraints(Character& character);
+/// One influence object of each kind, or two, around the mouth, jaw, cheeks and nose of a rigged character with the 68 landmarks.
+void add_influence_objects(Character& character);
+/// Lets the objects of the mouth take part in the talking clip.
+void move_objects_while_talking(Character& character);
 
 /// Moves the whole character: positions, deltas, joints and translation keys; p -> R (scale p) + move.
 void place(Character& character, double scale, const Eigen::Quaterniond& turn, const Vector3d& move);
