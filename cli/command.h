@@ -37,6 +37,7 @@ void add_controls(CLI::App& app, Common& common);
 void add_rename(CLI::App& app, Common& common);
 void add_map(CLI::App& app, Common& common);
 void add_batch(CLI::App& app, Common& common);
+void add_propagate(CLI::App& app, Common& common);
 void add_split(CLI::App& app, Common& common);
 void add_mirror(CLI::App& app, Common& common);
 void add_sample(CLI::App& app, Common& common);

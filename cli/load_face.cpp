@@ -6,6 +6,7 @@
 #include "mien/io/landmark_file.h"
 #include "mien/io/load.h"
 #include "mien/sample/sample.h"
+#include "mien/transfer/twin.h"
 
 namespace mien::cli {
 namespace {
@@ -41,6 +42,20 @@ void complete(const Side& side, const Character& like, FindLandmarksOptions opti
   sides.push_back({side.file, std::move(found)});
 }
 
+/// Where one is the other with another mesh, landmarks need no finding; those that `to` has stay.
+bool take_landmarks(const Character& from, Character& to) {
+  std::optional<TwinLandmarks> twin = landmarks_of_twin(from, to);
+  if (!twin) return false;
+  const auto add = [](auto& own, auto& others) {
+    for (auto& other : others)
+      if (std::none_of(own.begin(), own.end(), [&](const auto& one) { return one.name == other.name; }))
+        own.push_back(std::move(other));
+  };
+  add(to.landmarks, twin->landmarks);
+  add(to.curves, twin->curves);
+  return true;
+}
+
 }  // namespace
 
 Character load_face(const std::string& path, const std::string& landmarks) {
@@ -59,14 +74,14 @@ std::vector<FoundSide> find_missing(const Side& source, const Side& target, cons
   FindLandmarksOptions options;
   options.progress = progress;
   if (marks(source.face) < enough_pairs && marks(target.face) >= enough_pairs) {
-    complete(source, target.face, options, sides);
+    if (!take_landmarks(target.face, source.face)) complete(source, target.face, options, sides);
     return sides;
   }
   if (marks(source.face) < enough_pairs) {
     complete(source, make_sample("human"), options, sides);
     options.like_facing = sides[0].found.facing;
   }
-  complete(target, source.face, options, sides);
+  if (!take_landmarks(source.face, target.face)) complete(target, source.face, options, sides);
   return sides;
 }
 

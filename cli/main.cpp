@@ -41,6 +41,7 @@ int main(int argc, char** argv) {
   mien::cli::add_rename(app, common);
   mien::cli::add_map(app, common);
   mien::cli::add_batch(app, common);
+  mien::cli::add_propagate(app, common);
   mien::cli::add_split(app, common);
   mien::cli::add_mirror(app, common);
   for (CLI::App* command : app.get_subcommands({})) {

@@ -14,6 +14,7 @@
 #include "mien/motion/fit_markers.h"
 #include "mien/motion/retarget_joints.h"
 #include "mien/motion/retarget_sliders.h"
+#include "mien/transfer/retarget_clips.h"
 
 namespace mien::cli {
 namespace {
@@ -22,6 +23,7 @@ struct Request {
   std::string capture, character, output, map, name;
   std::vector<std::string> gains;
   double rate = 30, neutral = -1;
+  bool partial = false;
   RetargetOptions options;
 };
 
@@ -96,7 +98,50 @@ std::string list(const char* heading, const std::vector<std::string>& names) {
   return text + "\n";
 }
 
+bool is_character(const std::string& path) {
+  const std::string extension = std::filesystem::path(path).extension().string();
+  return extension == ".glb" || extension == ".gltf";
+}
+
+/// The clips of a rigged character on another that has the same rig.
+void run_clips(const Request& request, const Common& common) {
+  const Character source = load(request.capture);
+  Character character = load(request.character);
+  RetargetedClips result = [&] {
+    try {
+      return retarget_clips(source, character);
+    } catch (const Error& error) {
+      throw error.in_file(request.capture);
+    }
+  }();
+  if (!result.dropped.empty() && !request.partial)
+    throw invalid_input("rig",
+                        fmt::format("{} channels move what {} does not have, first: {}",
+                                    result.dropped.size(), request.character, result.dropped.front()),
+                        "two characters of one rig, or --partial to leave these channels out")
+        .in_file(request.capture);
+  std::string text;
+  nlohmann::json clips = nlohmann::json::array();
+  for (Clip& clip : result.clips) {
+    if (!request.name.empty() && result.clips.size() == 1) clip.name = request.name;
+    std::erase_if(character.clips, [&](const Clip& other) { return other.name == clip.name; });
+    text += fmt::format("{}: clip {}, {:.2f} s, {} channels\n", request.output, clip.name, clip.duration(),
+                        clip.channels.size());
+    clips.push_back({{"name", clip.name}, {"seconds", clip.duration()}, {"channels", clip.channels.size()}});
+    character.clips.push_back(std::move(clip));
+  }
+  save(character, request.output);
+  for (const std::string& line : result.differences) text += "the rigs differ: " + line + "\n";
+  for (const std::string& line : result.dropped) text += "left out: " + line + "\n";
+  print_result(common, text,
+               {{"output", request.output},
+                {"clips", clips},
+                {"differences", result.differences},
+                {"dropped", result.dropped}});
+}
+
 void run(Request& request, const Common& common) {
+  if (is_character(request.capture)) return run_clips(request, common);
   read_gains(request.gains, request.options);
   Character character = load(request.character);
   Retargeted retargeted;
@@ -131,8 +176,10 @@ void add_retarget(CLI::App& app, Common& common) {
   auto request = std::make_shared<Request>();
   RetargetOptions& options = request->options;
   command
-      ->add_option("capture", request->capture,
-                   "Live Link Face or other slider CSV, marker CSV (NAME.x, NAME.y, NAME.z) or BVH skeleton")
+      ->add_option(
+          "capture", request->capture,
+          "Live Link Face or other slider CSV, marker CSV (NAME.x, NAME.y, NAME.z), BVH skeleton, or a "
+          "character (.glb, .gltf) of the same rig, whose clips are adapted to CHARACTER's proportions")
       ->required();
   command->add_option("character", request->character, "A character with sliders or joints (.glb, .gltf)")
       ->required();
@@ -148,6 +195,9 @@ void add_retarget(CLI::App& app, Common& common) {
           "--neutral", request->neutral,
           "Second at which the actor's face is neutral (default: sliders are not calibrated, markers at 0)")
       ->check(CLI::NonNegativeNumber);
+  command->add_flag(
+      "--partial", request->partial,
+      "From a character: leave out what moves joints, shapes or objects that CHARACTER does not have");
   command->add_option("--gain", request->gains, "SLIDER=FACTOR, as often as needed");
   command->add_flag("--overdrive", options.overdrive, "Keep values beyond a slider's range");
   command

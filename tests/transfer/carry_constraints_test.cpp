@@ -3,152 +3,136 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "mien/character/validate.h"
-#include "mien/evaluate/constraints.h"
-#include "mien/evaluate/evaluate.h"
-#include "transfer/faces.h"
+#include "transfer/small_rig.h"
 
 namespace mien::test {
 namespace {
 
-using Eigen::Vector3d;
-using Kind = Constraint::Kind;
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
+using ::testing::SizeIs;
 
-Node node(const std::string& name, int parent, const Vector3d& translation, double angle) {
-  Node n;
-  n.name = name;
-  n.parent = parent;
-  n.rest.translation = translation;
-  n.rest.rotation = Eigen::AngleAxisd(angle, Vector3d(1, 1, 0).normalized());
-  return n;
+constexpr double infinite = std::numeric_limits<double>::infinity();
+
+Constraint limit_of(int node, bool relative) {
+  Constraint limit;
+  limit.name = "limit";
+  limit.node = node;
+  limit.relative = relative;
+  limit.translation = {ValueRange{-1, 2}, ValueRange{-infinite, 0.5}, ValueRange{}};
+  limit.rotation[0] = {-0.1, 0.4};
+  return limit;
 }
 
-enum { head, jaw, eye, goal, face };
-
-Constraint made(const char* name, Kind kind, int node, std::vector<ConstraintSource> sources) {
-  Constraint c;
-  c.name = name;
-  c.kind = kind;
-  c.node = node;
-  c.sources = std::move(sources);
-  return c;
-}
-
-/// A head with a limited jaw, an eye that looks at a goal and goes along with the jaw, and the node of the face.
-Character rig() {
-  Character c;
-  c.nodes = {node("head", -1, {0, 1, 0}, 0.4), node("jaw", head, {0, -0.5, 1}, -1),
-             node("eye", head, {0.3, 0.2, 1}, 0.3), node("goal", -1, {0.5, 1, 6}, 0),
-             node("Face", -1, {0, 0, 0}, 0)};
-  Skin skin;
-  skin.joints = {head, jaw, eye};
-  const auto model = model_matrices(c);
-  for (const int joint : skin.joints) skin.inverse_bind.push_back(model[joint].inverse());
-  c.skins = {skin};
-  Part part;
-  part.node = face;
-  part.skin = 0;
-  c.parts = {part};
-  c.constraints = {made("jaw turns", Kind::limit, jaw, {}), made("jaw slides", Kind::limit, jaw, {}),
-                   made("along", Kind::point, eye, {{jaw, 1}}), made("look", Kind::aim, eye, {{goal, 1}})};
-  c.constraints[0].rotation[0] = {-0.2, 0.5};
-  c.constraints[0].rotation[1] = c.constraints[0].rotation[2] = {0, 0};
-  c.constraints[1].translation = {ValueRange{-0.1, 0.1}, ValueRange{-0.05, 0}, ValueRange{}};
-  c.constraints[2].influence = 0.5;
-  c.constraints[3].relative = false;
-  return c;
-}
-
-/// The clip's one key turns and shifts the jaw out of its limits and moves the goal.
-Clip pose_clip() {
-  Channel turn;
-  turn.property = Channel::Property::rotation;
-  turn.node = jaw;
-  turn.times = {0};
-  turn.values = {0.6f, 0, 0, 0.8f};
-  Channel shift = turn, look = turn;
-  shift.property = look.property = Channel::Property::translation;
-  shift.values = {0.5f, -0.7f, 1.3f};
-  look.node = goal;
-  look.values = {-2, 1.5f, 5};
-  return {"pose", {turn, shift, look}, {}};
-}
-
-Character carried(const Character& source, const Similarity& s, std::vector<std::string>& dropped,
-                  Clip& clip) {
-  const SpaceMap map{[s](const Vector3d& x) { return s(x); }, [s](const Vector3d&) { return s.rotation; },
-                     [s](const Vector3d&) { return s.scale; }};
-  const CarriedSkeleton skeleton = carry_skeleton(source, map, 0);
-  Character target;
-  target.nodes = skeleton.nodes;
-  target.skins = {skeleton.skin};
-  target.sliders = source.sliders;
-  clip = carry_clip(source, clip, skeleton, {}, dropped);
-  target.constraints = carry_constraints(source, target, skeleton, dropped);
-  target.controls = carry_controls(source, target, skeleton, dropped);
-  return target;
-}
-
-TEST(CarryConstraints, ConstrainingAndCarryingCommute) {
-  const Similarity s{
-      2.5, Eigen::AngleAxisd(0.7, Vector3d(1, 2, -1).normalized()).toRotationMatrix(), {3, -1, 2}};
-  const Character source = rig();
+/// `source` with one constraint, its nodes placed by `by`.
+Constraint carried(Character source, Constraint constraint, const Similarity& by) {
+  source.constraints = {std::move(constraint)};
+  Character target = source;
+  const CarriedSkeleton skeleton = carry_skeleton(source, of_similarity(by), 0);
+  std::copy(skeleton.nodes.begin(), skeleton.nodes.end(), target.nodes.begin());
   std::vector<std::string> dropped;
-  Clip clip = pose_clip();
-  const auto before = posed_matrices(source, sample_clip(source, clip, 0));
-  Clip there = clip;
-  const Character target = carried(source, s, dropped, there);
+  const auto constraints = carry_constraints(source, target, rig_map_of(source, by), dropped);
   EXPECT_THAT(dropped, IsEmpty());
-  EXPECT_TRUE(constraint_problems(target).empty());
-  const auto after = posed_matrices(target, sample_clip(target, there, 0));
-  for (const int n : {head, jaw, eye, goal}) {
-    const Vector3d expected = s(Vector3d(before[n].topRightCorner<3, 1>()));
-    EXPECT_LT((after[n].topRightCorner<3, 1>() - expected).norm(), 2e-6) << n;
-    EXPECT_LT((after[n].topLeftCorner<3, 3>() - s.rotation * before[n].topLeftCorner<3, 3>()).norm(), 2e-6)
-        << n;
-  }
+  EXPECT_THAT(constraints, SizeIs(1));
+  return constraints.at(0);
 }
 
-TEST(CarryConstraints, AbsoluteRangesMoveWithTheRest) {
+TEST(carry_constraints, what_names_a_node_that_was_not_carried_is_named_and_left_behind) {
   Character source = rig();
-  source.constraints.resize(2);
-  source.constraints[1].relative = false;
-  source.constraints[1].translation[1] = {-0.7, -0.4};
-  const Similarity s{2, Eigen::Matrix3d::Identity(), {0, 0, 0}};
+  Constraint aim;
+  aim.name = "look";
+  aim.kind = Constraint::Kind::aim;
+  aim.node = 2;
+  aim.sources = {{5, 1}, {3, 0.5}};
+  Constraint follow = aim;
+  follow.name = "follow";
+  follow.sources = {{5, 1}};
+  source.constraints = {aim, follow, limit_of(5, true)};
+  RigMap map = rig_map_of(source, {});
+  map.node_of[5] = -1;
   std::vector<std::string> dropped;
-  Clip clip = pose_clip();
-  const Character target = carried(source, s, dropped, clip);
-  EXPECT_NEAR(target.constraints[1].translation[1].low, -1.4, 1e-12);
-  EXPECT_NEAR(target.constraints[1].translation[1].high, -0.8, 1e-12);
-  EXPECT_TRUE(std::isinf(target.constraints[1].translation[2].high));
-  EXPECT_EQ(target.constraints[0].rotation, source.constraints[0].rotation);
+  const auto constraints = carry_constraints(source, source, map, dropped);
+  EXPECT_THAT(dropped, ElementsAre("constraint look: node Tooth", "constraint follow: node Tooth",
+                                   "constraint limit: node Tooth"));
+  ASSERT_THAT(constraints, SizeIs(1));
+  EXPECT_EQ(constraints[0].name, "look");
+  EXPECT_THAT(constraints[0].sources, ElementsAre(ConstraintSource{3, 0.5}));
 }
 
-TEST(CarryConstraints, WhatIsNotCarriedIsSaid) {
+TEST(carry_constraints, translation_limits_grow_as_lengths_do) {
+  const Constraint limit = carried(rig(), limit_of(3, true), some_similarity(4));
+  EXPECT_EQ(limit.node, 3);
+  EXPECT_EQ(limit.translation[0], (ValueRange{-4, 8}));
+  EXPECT_EQ(limit.translation[1], (ValueRange{-infinite, 2}));
+  EXPECT_EQ(limit.translation[2], ValueRange{});
+  EXPECT_EQ(limit.rotation[0], (ValueRange{-0.1, 0.4}));
+}
+
+TEST(carry_constraints, absolute_limits_move_with_the_rest) {
+  const Character source = rig();
+  const Constraint limit = carried(source, limit_of(3, false), some_similarity(4));
+  // The chin rests at (0.2, 0, 2) below the jaw, whose frame turned with the face.
+  EXPECT_NEAR(limit.translation[0].low, 4 * -1, 1e-9);
+  EXPECT_NEAR(limit.translation[0].high, 4 * 2, 1e-9);
+  EXPECT_EQ(limit.translation[1].low, -infinite);
+  EXPECT_NEAR(limit.translation[1].high, 4 * 0.5, 1e-9);
+}
+
+TEST(carry_constraints, limits_of_a_node_without_a_parent_turn_with_the_face) {
+  // Y up to Z up: x stays, y becomes z, z becomes -y.
+  Eigen::Matrix3d turn;
+  turn << 1, 0, 0, 0, 0, -1, 0, 1, 0;
+  const Constraint limit = carried(rig(), limit_of(0, true), {3, turn, {1, 2, 3}});
+  EXPECT_EQ(limit.translation[0], (ValueRange{-3, 6}));
+  EXPECT_EQ(limit.translation[1], ValueRange{});
+  EXPECT_EQ(limit.translation[2], (ValueRange{-infinite, 1.5}));
+  Constraint follow = limit_of(0, true);
+  follow.kind = Constraint::Kind::point;
+  follow.sources = {{2, 1}};
+  follow.axes = {true, false, false};
+  EXPECT_THAT(carried(rig(), follow, {3, turn, {0, 0, 0}}).axes, ElementsAre(true, false, false));
+  follow.axes = {false, true, false};
+  EXPECT_THAT(carried(rig(), follow, {3, turn, {0, 0, 0}}).axes, ElementsAre(false, false, true));
+}
+
+TEST(carry_constraints, an_aim_keeps_its_own_axes_and_turns_its_up) {
+  Constraint aim;
+  aim.kind = Constraint::Kind::aim;
+  aim.node = 2;
+  aim.sources = {{3, 1}};
+  aim.up = Eigen::Vector3d(0, 0, 1);
+  const Similarity by = some_similarity(4);
+  const Constraint result = carried(rig(), aim, by);
+  EXPECT_EQ(result.aim_axis, aim.aim_axis);
+  EXPECT_EQ(result.up_axis, aim.up_axis);
+  EXPECT_LT((result.up - by.rotation * aim.up).norm(), 1e-12);
+}
+
+TEST(carry_controls, lose_what_they_drove_and_keep_their_mirrors) {
   Character source = rig();
-  source.constraints[3].sources = {{face, 1}};
-  source.sliders = {{"smile", 0, 1, 0, {}}};
-  Control slider, lost, kept;
-  slider.name = "smile";
-  slider.sliders = {0};
-  lost.name = "face";
-  lost.kind = kept.kind = Control::Kind::joint;
-  lost.node = face;
-  lost.mirror = 2;
-  kept.name = "jaw";
-  kept.node = jaw;
-  kept.mirror = 1;
-  source.controls = {slider, lost, kept};
+  source.sliders.resize(3);
+  Control left, right, lost, jaw;
+  left.name = "smile left";
+  left.sliders = {0};
+  left.mirror = 2;
+  lost.name = "frown";
+  lost.sliders = {1};
+  right.name = "smile right";
+  right.sliders = {2};
+  right.mirror = 0;
+  jaw.name = "jaw";
+  jaw.kind = Control::Kind::joint;
+  jaw.node = 2;
+  source.controls = {left, lost, right, jaw};
   std::vector<std::string> dropped;
-  Clip clip = pose_clip();
-  const Character target = carried(source, {}, dropped, clip);
-  EXPECT_THAT(dropped, ElementsAre("constraint look", "control face"));
-  EXPECT_EQ(target.constraints.size(), 3u);
-  ASSERT_EQ(target.controls.size(), 2u);
-  EXPECT_EQ(target.controls[1].mirror, -1);
-  EXPECT_TRUE(control_problems(target).empty());
+  const auto controls = carry_controls(source, {4, -1, 5}, {0, 1, 7, 3, -1, -1}, dropped);
+  EXPECT_THAT(dropped, ElementsAre("control frown"));
+  ASSERT_THAT(controls, SizeIs(3));
+  EXPECT_THAT(controls[0].sliders, ElementsAre(4));
+  EXPECT_EQ(controls[0].mirror, 1);
+  EXPECT_THAT(controls[1].sliders, ElementsAre(5));
+  EXPECT_EQ(controls[1].mirror, 0);
+  EXPECT_EQ(controls[2].node, 7);
 }
 
 }  // namespace

@@ -191,8 +191,10 @@ std::vector<PointPair> telling_pairs(const PointTracks& tracks, double least_len
 Clip copy_by_name(const Character& from, const Clip& clip, const Character& to) {
   Clip copy{clip.name, {}, clip.carried};
   for (Channel channel : clip.channels) {
-    if (channel.moves_wire()) continue;  // transfers leave wires behind
-    if (channel.property == Channel::Property::shape_weight) {
+    if (channel.moves_wire()) {
+      channel.wire = find_wire(to, from.wires[static_cast<std::size_t>(channel.wire)].name);
+      if (channel.wire >= 0) copy.channels.push_back(std::move(channel));
+    } else if (channel.property == Channel::Property::shape_weight) {
       channel.shape = find_shape(to, from.shapes[static_cast<std::size_t>(channel.shape)].name);
       channel.part = -1;
       if (channel.shape >= 0) copy.channels.push_back(std::move(channel));

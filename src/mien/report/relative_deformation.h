@@ -60,7 +60,7 @@ std::vector<double> relative_deformation(const PointTracks& tracks, PointPair pa
 ///   cost          #P^2 x moments
 std::vector<PointPair> telling_pairs(const PointTracks& tracks, double least_length, int count);
 
-/// The clip with its values unchanged on another character's nodes and shapes of the same names: what copying an
+/// The clip with its values unchanged on another character's nodes, shapes, sliders, wires and objects of the same names: what copying an
 /// animation without transferring it gives. Channels without a counterpart are left out.
 Clip copy_by_name(const Character& from, const Clip& clip, const Character& to);
 

@@ -16,7 +16,7 @@ constexpr std::array<ThesisStep, 7> steps{
      {"Dense Deformation", "dense correspondence", {1.41, 1.33, 1.35, 1.15, 1.12, 1.03}},
      {"Joints Transfer", "joints", {16.09, 16.56, 16.55, 15.32, 19.05, 19.18}},
      {"Shape Transfer (each)", "shapes", {5.50, 4.57, 4.41, 3.42, 2.36, 2.42}, true},
-     {"NURBS / Additional Deformers", "", {21.14, 21.35, 21.36, 21.17, 15.32, 15.05}},
+     {"NURBS / Additional Deformers", "influence objects", {21.14, 21.35, 21.36, 21.17, 15.32, 15.05}},
      {"Weight Transfer", "skin weights", {8.17, 7.36, 7.45, 7.16, 6.10, 6.57}},
      {"Animation Transfer", "clips", {0.30, 0.21, 0.25, 0.20, 1.25, 1.33}}}};
 

@@ -1,8 +1,9 @@
+// Limits are the one part of a constraint with a length in it, and the one that is said along axes. Frames below a joint turn with
+// the face; the frame of a node without a parent is model space and does not.
 #include "mien/transfer/carry_constraints.h"
 
 #include <algorithm>
-
-#include "mien/geometry/similarity.h"
+#include <cmath>
 
 namespace mien {
 namespace {
@@ -11,84 +12,115 @@ std::size_t at(int index) {
   return static_cast<std::size_t>(index);
 }
 
-/// Whether `node` was carried; its number becomes the target's.
-bool carry_node(const CarriedSkeleton& skeleton, int& node) {
-  node = skeleton.node_of[at(node)];
-  return node >= 0;
-}
+using Ranges = std::array<ValueRange, 3>;
 
-/// The ranges of a limit, from what the node is at rest in the source to what it is in the target.
-void carry_ranges(const Transform& from, const Transform& to, double growth, Constraint& limit) {
-  const auto carry = [](ValueRange& range, double from_value, double factor, double to_value) {
-    range.low = factor * (range.low - from_value) + to_value;
-    range.high = factor * (range.high - from_value) + to_value;
-  };
-  for (std::size_t a = 0; a < 3; ++a) {
-    const auto axis = static_cast<Eigen::Index>(a);
-    if (limit.relative) {
-      carry(limit.translation[a], 0, growth, 0);
-      continue;
+/// Where the box of these ranges reaches along the axes after a rotation.
+Ranges turned(const Ranges& ranges, const Eigen::Matrix3d& rotation) {
+  Ranges result;
+  for (int i = 0; i < 3; ++i) {
+    double low = 0, high = 0;
+    for (int j = 0; j < 3; ++j) {
+      const double r = rotation(i, j);
+      if (std::abs(r) < 1e-9) continue;  // an unlimited axis that has no share in this one
+      const ValueRange& range = ranges[at(j)];
+      low += r > 0 ? r * range.low : r * range.high;
+      high += r > 0 ? r * range.high : r * range.low;
     }
-    carry(limit.translation[a], from.translation[axis], growth, to.translation[axis]);
-    const double ratio = from.scale[axis] != 0 ? to.scale[axis] / from.scale[axis] : 1;
-    if (ratio > 0) carry(limit.scale[a], 0, ratio, 0);
+    result[at(i)] = {low, high};
   }
+  return result;
 }
 
-/// How the node's rest turned from the one model space into the other.
-Eigen::Matrix3d turn_of(const Character& source, int from, const Character& target, int to) {
-  const Eigen::Matrix3d before = model_matrices(source)[at(from)].topLeftCorner<3, 3>();
-  const Eigen::Matrix3d after = model_matrices(target)[at(to)].topLeftCorner<3, 3>();
-  return closest_rotation(after) * closest_rotation(before).transpose();
+std::array<bool, 3> turned(const std::array<bool, 3>& axes, const Eigen::Matrix3d& rotation) {
+  std::array<bool, 3> result{};
+  for (int i = 0; i < 3; ++i) {
+    Eigen::Index j = 0;
+    rotation.row(i).cwiseAbs().maxCoeff(&j);
+    result[at(i)] = axes[static_cast<std::size_t>(j)];
+  }
+  return result;
 }
 
-bool carry_nodes(const CarriedSkeleton& skeleton, Constraint& constraint) {
-  bool all = carry_node(skeleton, constraint.node);
-  for (ConstraintSource& source : constraint.sources) all = carry_node(skeleton, source.node) && all;
-  if (constraint.up_node >= 0) all = carry_node(skeleton, constraint.up_node) && all;
-  return all;
+/// Translation ranges in the target's parent frame.
+void carry_translation(const Node& from, const Node& to, double growth, const Eigen::Matrix3d& turn,
+                       Constraint& constraint) {
+  const auto shifted = [](Ranges ranges, const Eigen::Vector3d& by, double factor) {
+    for (int k = 0; k < 3; ++k) {
+      ValueRange& range = ranges[at(k)];
+      range = {factor * range.low + by[k], factor * range.high + by[k]};
+    }
+    return ranges;
+  };
+  const bool absolute = !constraint.relative;
+  Ranges ranges = constraint.translation;
+  if (absolute) ranges = shifted(ranges, -from.rest.translation, 1);
+  ranges = turned(shifted(ranges, Eigen::Vector3d::Zero(), growth), turn);
+  if (absolute) ranges = shifted(ranges, to.rest.translation, 1);
+  constraint.translation = ranges;
+}
+
+bool carry_references(const Character& source, const RigMap& map, Constraint& constraint,
+                      std::vector<std::string>& dropped) {
+  const auto node_of = [&](int node) {
+    if (node >= 0 && map.node_of[at(node)] < 0)
+      dropped.push_back("constraint " + constraint.name + ": node " + source.nodes[at(node)].name);
+    return node < 0 ? -1 : map.node_of[at(node)];
+  };
+  const bool limit = constraint.kind == Constraint::Kind::limit;
+  constraint.node = node_of(constraint.node);
+  for (ConstraintSource& follow : constraint.sources) follow.node = node_of(follow.node);
+  std::erase_if(constraint.sources, [](const ConstraintSource& follow) { return follow.node < 0; });
+  constraint.up_node = node_of(constraint.up_node);
+  return constraint.node >= 0 && (limit || !constraint.sources.empty());
 }
 
 }  // namespace
 
-std::vector<Constraint> carry_constraints(const Character& source, const Character& target,
-                                          const CarriedSkeleton& skeleton,
+std::vector<Constraint> carry_constraints(const Character& source, const Character& target, const RigMap& map,
                                           std::vector<std::string>& dropped) {
-  std::vector<Constraint> result;
-  for (const Constraint& constraint : source.constraints) {
-    Constraint carried = constraint;
-    if (!carry_nodes(skeleton, carried)) {
-      dropped.push_back("constraint " + constraint.name);
-      continue;
+  std::vector<Constraint> carried;
+  const auto model = model_matrices(source);
+  for (const Constraint& original : source.constraints) {
+    Constraint constraint = original;
+    if (!carry_references(source, map, constraint, dropped)) continue;
+    const Node& from = source.nodes[at(original.node)];
+    const Eigen::Vector3d place = model[at(original.node)].topRightCorner<3, 1>();
+    const Eigen::Matrix3d rotation = map.space.rotation(place);
+    const Eigen::Matrix3d turn = from.parent < 0 ? rotation : Eigen::Matrix3d(Eigen::Matrix3d::Identity());
+    constraint.up = rotation * original.up;
+    constraint.axes = turned(original.axes, turn);
+    if (constraint.kind == Constraint::Kind::limit) {
+      carry_translation(from, target.nodes[at(constraint.node)], map.space.scale(place), turn, constraint);
+      if (!constraint.relative) constraint.rotation = turned(original.rotation, turn);
     }
-    if (constraint.kind == Constraint::Kind::limit)
-      carry_ranges(source.nodes[at(constraint.node)].rest, target.nodes[at(carried.node)].rest,
-                   skeleton.growth[at(constraint.node)], carried);
-    if (constraint.kind == Constraint::Kind::aim && constraint.up_node < 0)
-      carried.up = turn_of(source, constraint.node, target, carried.node) * constraint.up;
-    result.push_back(std::move(carried));
+    carried.push_back(std::move(constraint));
   }
-  return result;
+  return carried;
 }
 
-std::vector<Control> carry_controls(const Character& source, const Character& target,
-                                    const CarriedSkeleton& skeleton, std::vector<std::string>& dropped) {
-  std::vector<Control> result;
+std::vector<Control> carry_controls(const Character& source, const std::vector<int>& slider_of,
+                                    const std::vector<int>& node_of, std::vector<std::string>& dropped) {
+  std::vector<Control> carried;
   std::vector<int> index(source.controls.size(), -1);
-  const bool has_sliders = target.sliders.size() == source.sliders.size();
   for (std::size_t c = 0; c < source.controls.size(); ++c) {
-    Control carried = source.controls[c];
-    const bool kept = carried.kind == Control::Kind::joint ? carry_node(skeleton, carried.node) : has_sliders;
-    if (!kept) {
-      dropped.push_back("control " + carried.name);
+    Control control = source.controls[c];
+    for (int& slider : control.sliders)
+      if (slider >= 0) slider = slider_of[at(slider)];
+    if (control.node >= 0) control.node = node_of[at(control.node)];
+    const bool drives =
+        control.kind == Control::Kind::joint
+            ? control.node >= 0
+            : std::any_of(control.sliders.begin(), control.sliders.end(), [](int s) { return s >= 0; });
+    if (!drives) {
+      dropped.push_back("control " + control.name);
       continue;
     }
-    index[c] = static_cast<int>(result.size());
-    result.push_back(std::move(carried));
+    index[c] = static_cast<int>(carried.size());
+    carried.push_back(std::move(control));
   }
-  for (Control& control : result)
+  for (Control& control : carried)
     if (control.mirror >= 0) control.mirror = index[at(control.mirror)];
-  return result;
+  return carried;
 }
 
 }  // namespace mien

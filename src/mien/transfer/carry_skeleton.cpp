@@ -2,7 +2,6 @@
 
 #include <Eigen/LU>
 #include <algorithm>
-#include <cmath>
 
 #include "mien/core/error.h"
 #include "mien/geometry/similarity.h"
@@ -148,125 +147,6 @@ CarriedSkeleton carry_skeleton(const Character& source, const SpaceMap& map, int
   if (!source.skins.empty() && source.skins.front().skeleton >= 0)
     result.skin.skeleton = result.node_of[at(source.skins.front().skeleton)];
   return result;
-}
-
-namespace {
-
-/// One key's values from the source's parent frame into the target's.
-class ChannelCarrier {
- public:
-  ChannelCarrier(const Node& from, const Node& to, double growth)
-      : from_(from.rest), to_(to.rest), growth_(growth) {
-    turn_ = to_.rotation * from_.rotation.inverse();
-    // Without a rotation of the rest in between, the turn is what the frames have, not rounding.
-    if (turn_.angularDistance(Eigen::Quaterniond::Identity()) < 1e-7) turn_.setIdentity();
-  }
-
-  void translation(float* value, bool tangent) const {
-    Eigen::Map<Eigen::Vector3f> v(value);
-    const Eigen::Vector3d offset = tangent ? Eigen::Vector3d::Zero() : from_.translation;
-    const Eigen::Vector3d moved = growth_ * (turn_ * (v.cast<double>() - offset));
-    v = (tangent ? moved : Eigen::Vector3d(moved + to_.translation)).cast<float>();
-  }
-  void rotation(float* value, bool tangent) const {
-    const Eigen::Quaterniond q(value[3], value[0], value[1], value[2]);
-    Eigen::Quaterniond r = turn_ * q;
-    if (!tangent) r.normalize();
-    value[0] = static_cast<float>(r.x());
-    value[1] = static_cast<float>(r.y());
-    value[2] = static_cast<float>(r.z());
-    value[3] = static_cast<float>(r.w());
-  }
-  void scale(float* value) const {
-    for (int k = 0; k < 3; ++k)
-      if (from_.scale[k] != 0) value[k] = static_cast<float>(value[k] * to_.scale[k] / from_.scale[k]);
-  }
-
- private:
-  Transform from_, to_;
-  double growth_;
-  Eigen::Quaterniond turn_;
-};
-
-void carry_values(const ChannelCarrier& carrier, Channel& channel) {
-  const int width = channel.width();
-  const bool cubic = channel.interpolation == Interpolation::cubic_spline;
-  for (std::size_t i = 0; (i + 1) * static_cast<std::size_t>(width) <= channel.values.size(); ++i) {
-    float* value = channel.values.data() + i * static_cast<std::size_t>(width);
-    const bool tangent = cubic && i % 3 != 1;
-    if (channel.property == Channel::Property::translation) carrier.translation(value, tangent);
-    if (channel.property == Channel::Property::rotation) carrier.rotation(value, tangent);
-    if (channel.property == Channel::Property::scale) carrier.scale(value);
-  }
-}
-
-}  // namespace
-
-Clip carry_clip(const Character& source, const Clip& clip, const CarriedSkeleton& skeleton,
-                const std::vector<int>& shape_of, std::vector<std::string>& dropped) {
-  Clip result{clip.name, {}, clip.carried};
-  const int first_node = [&] {
-    for (const int n : skeleton.node_of)
-      if (n >= 0) return n;
-    return 0;
-  }();
-  for (const Channel& channel : clip.channels) {
-    if (channel.moves_wire()) {
-      dropped.push_back("clip " + clip.name + ": wire " + source.wires[at(channel.wire)].name);
-      continue;
-    }
-    Channel carried = channel;
-    carried.part = -1;
-    if (channel.property == Channel::Property::shape_weight) {
-      carried.shape = shape_of[at(channel.shape)];
-      if (carried.shape < 0) {
-        dropped.push_back("clip " + clip.name + ": shape " + source.shapes[at(channel.shape)].name);
-        continue;
-      }
-    } else if (channel.property != Channel::Property::slider) {
-      carried.node = skeleton.node_of[at(channel.node)];
-      if (carried.node < 0) {
-        dropped.push_back("clip " + clip.name + ": node " + source.nodes[at(channel.node)].name);
-        continue;
-      }
-      carry_values(
-          ChannelCarrier(source.nodes[at(channel.node)], skeleton.nodes[at(carried.node - first_node)],
-                         skeleton.growth[at(channel.node)]),
-          carried);
-    }
-    result.channels.push_back(std::move(carried));
-  }
-  return result;
-}
-
-std::vector<std::string> rig_differences(const Character& a, const Character& b) {
-  std::vector<std::string> lines;
-  const auto parent_name = [](const Character& c, const Node& node) {
-    return node.parent < 0 ? std::string("nothing") : c.nodes[at(node.parent)].name;
-  };
-  const auto joints = [](const Character& c) {
-    std::vector<int> list;
-    for (const Skin& skin : c.skins) list.insert(list.end(), skin.joints.begin(), skin.joints.end());
-    std::sort(list.begin(), list.end());
-    list.erase(std::unique(list.begin(), list.end()), list.end());
-    return list;
-  };
-  const auto compare = [&](const Character& x, const Character& y, const char* where, bool parents) {
-    for (const int j : joints(x)) {
-      const Node& node = x.nodes[at(j)];
-      const int other = find_node(y, node.name);
-      if (other < 0)
-        lines.push_back("joint " + node.name + " is missing in " + where);
-      else if (parents && parent_name(x, node) != parent_name(y, y.nodes[at(other)]))
-        lines.push_back("joint " + node.name + " hangs below " + parent_name(x, node) + " and below " +
-                        parent_name(y, y.nodes[at(other)]));
-    }
-    for (const Shape& shape : x.shapes)
-      if (find_shape(y, shape.name) < 0) lines.push_back("shape " + shape.name + " is missing in " + where);
-  };
-  compare(a, b, "the second", true);
-  compare(b, a, "the first", false);
-  return lines;
 }
 
 }  // namespace mien

@@ -1,5 +1,5 @@
 #pragma once
-/// Joints, their bind poses and their animation, placed in the target by a map of space.
+/// Joints and their bind poses, placed in the target by a map of space.
 
 #include <Eigen/Core>
 #include <functional>
@@ -43,16 +43,5 @@ CarriedSkeleton carry_skeleton(const Character& source, const SpaceMap& map, int
 
 /// The nearest joint at or above the node that holds a part without a skin, or -1.
 int holding_joint(const Character& source, const Part& part);
-
-/// Channels of one clip on the carried skeleton: translations relative to rest grow by `growth` and turn with the
-/// parent, rotations act from the new rest, scales stay factors of the rest's. Keys and interpolation stay.
-///   shape_of  per source shape: its index in the target, -1: left out
-///   dropped   receives one line a channel whose node or shape was not carried
-Clip carry_clip(const Character& source, const Clip& clip, const CarriedSkeleton& skeleton,
-                const std::vector<int>& shape_of, std::vector<std::string>& dropped);
-
-/// What two rigs differ in, one line a difference, empty when a clip of one plays on the other: joints by name and
-/// parent, shapes by name (thesis 4.8: the structure is checked first).
-std::vector<std::string> rig_differences(const Character& a, const Character& b);
 
 }  // namespace mien

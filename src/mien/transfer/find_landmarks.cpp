@@ -20,6 +20,7 @@ namespace {
 
 using detail::PlacedHead;
 using detail::SoughtHead;
+using detail::surface_point;
 using detail::TemplateHead;
 
 /// Read off the heads of the documents' table: right placements have scores up to .076 and likeness from .57, wrong ones
@@ -47,23 +48,6 @@ std::vector<Landmark> FoundLandmarks::points() const {
 }
 
 namespace {
-
-/// The point of the target's skin at one corner mix of one of its triangles, as its file numbers it.
-SurfacePoint surface_point(const SoughtHead& head, const SurfaceQuery::Hit& hit) {
-  const int triangle = head.skin.triangles[at(hit.triangle)];
-  SurfacePoint point;
-  point.part = head.pool.triangle_part[at(triangle)];
-  point.face = head.pool.triangle_face[at(triangle)];
-  point.barycentric = hit.barycentric;
-  // Triangles of a face are a fan in order: this one's number within it.
-  int fan = 0;
-  for (int t = triangle; t > 0 && head.pool.triangle_face[at(t - 1)] == point.face &&
-                         head.pool.triangle_part[at(t - 1)] == point.part;
-       --t)
-    ++fan;
-  point.corners = {0, fan + 1, fan + 2};
-  return point;
-}
 
 /// rms of log singular values about their mean, weighted by attention: how the template's triangles were bent.
 double stretch_of(const TemplateHead& head, const PointsD& guide) {
@@ -280,8 +264,10 @@ void Search::read_off() {
   };
   for (std::size_t i = 0; i < like_.landmarks.size(); ++i) {
     const auto hit = place(i);
-    found_.landmarks.push_back(
-        {{like_.landmarks[i].name, surface_point(sought_, hit)}, hit.position, confidence_of(i, hit), false});
+    found_.landmarks.push_back({{like_.landmarks[i].name, surface_point(sought_.pool, sought_.skin, hit)},
+                                hit.position,
+                                confidence_of(i, hit),
+                                false});
   }
   for (std::size_t k = 0; k < known_.size(); ++k)
     found_.landmarks[at(known_row_[k])] = {options_.given[at(known_given_[k])], known_[k].goal, 1, true};
@@ -297,7 +283,7 @@ void Search::read_off() {
   for (const LandmarkCurve& curve : like_.curves) {
     found_.curves.push_back({curve.name, {}, curve.count});
     for (std::size_t i = 0; i < curve.points.size(); ++i)
-      found_.curves.back().points.push_back(surface_point(sought_, place(row++)));
+      found_.curves.back().points.push_back(surface_point(sought_.pool, sought_.skin, place(row++)));
   }
 }
 

@@ -1,32 +1,22 @@
 #include "mien/transfer/transfer.h"
 
-#include <Eigen/LU>
 #include <chrono>
 #include <cmath>
-#include <memory>
-#include <optional>
 
 #include "mien/character/shown_parts.h"
 #include "mien/core/error.h"
 #include "mien/core/parallel.h"
-#include "mien/geometry/laplacian.h"
-#include "mien/geometry/moving_similarity.h"
-#include "mien/geometry/thin_plate_spline.h"
-#include "mien/texture/retexture.h"
-#include "mien/transfer/carry_constraints.h"
-#include "mien/transfer/carry_skeleton.h"
-#include "mien/transfer/carry_skin_weights.h"
-#include "mien/transfer/carry_uvs.h"
+#include "mien/transfer/carry_objects.h"
+#include "mien/transfer/carry_wires.h"
 #include "mien/transfer/contact.h"
-#include "mien/transfer/correspondence.h"
 #include "mien/transfer/detail/assemble_target.h"
 #include "mien/transfer/detail/eye_balls.h"
-#include "mien/transfer/detail/inner_pieces.h"
-#include "mien/transfer/detail/pool.h"
-#include "mien/transfer/register_surfaces.h"
+#include "mien/transfer/detail/face_size.h"
+#include "mien/transfer/detail/run.h"
 #include "mien/transfer/thesis.h"
 
 namespace mien {
+namespace detail {
 namespace {
 
 std::size_t at(int index) {
@@ -35,89 +25,50 @@ std::size_t at(int index) {
 
 /// Smaller displacements are sculpting noise, relative to the face's size.
 constexpr double least_delta = 1e-5;
+/// Where nothing was estimated there is no noise.
+constexpr double least_twin_delta = 1e-9;
 /// Radius over which areas are compared for the local scale, relative to the face's size.
 constexpr double scale_radius = 0.2;
 
 /// Points of the guide: the dense spline goes through the first, contacts look at all.
 constexpr std::size_t spline_samples = 500;
 constexpr int most_samples = 1000;
-/// The blur of each point on the joints, relative to the face's size.
-constexpr double joint_softness = 0.005;
 
-/// One transfer on its way: each step reads what the steps before left and adds its own.
-class Run {
- public:
-  Run(const Character& source, const Character& target, const TransferOptions& options)
-      : source_(source), target_(target), options_(options) {}
+/// How far the chords of a twin's triangles may cut below the source, relative to the face's size.
+constexpr double kept_reach = 0.02;
 
-  TransferResult operator()() {
-    check_request();
-    step("landmarks", [&] { read_surfaces(); });
-    step("skin deformation", [&] { find_guide(); });
-    step("dense correspondence", [&] { find_places(); });
-    step("joints", [&] { place_joints(); });
-    step("shapes", [&] { carry_shapes(); });
-    step("skin weights", [&] { carry_weights(); });
-    step("UVs", [&] { carry_texture_coordinates(); });
-    step("clips", [&] { carry_clips(); });
-    report_progress(options_.progress, "done", 1);
-    return {std::move(result_), std::move(report_)};
-  }
+constexpr int step_count = 9;
 
- private:
-  template <class Work>
-  void step(const char* name, const Work& work) {
-    report_progress(options_.progress, name, static_cast<double>(report_.steps.size()) / 8);
-    const auto start = std::chrono::steady_clock::now();
-    work();
-    const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
-    report_.steps.push_back({name, seconds.count()});
-  }
+}  // namespace
 
-  void warn(std::string what, std::string remedy) {
-    report_.warnings.push_back({std::move(what), std::move(remedy)});
-  }
+TransferResult Run::operator()() {
+  check_request();
+  step("landmarks", [&] { read_surfaces(); });
+  step("skin deformation", [&] { find_guide(); });
+  step("dense correspondence", [&] { find_places(); });
+  step("joints", [&] { place_joints(); });
+  step("shapes", [&] { carry_shapes(); });
+  step("skin weights", [&] { carry_weights(); });
+  step("UVs", [&] { carry_texture_coordinates(); });
+  step("influence objects", [&] { carry_rig(); });
+  step("clips", [&] { carry_clips(); });
+  report_progress(options_.progress, "done", 1);
+  return {std::move(result_), std::move(report_)};
+}
 
-  void check_request() const;
-  void read_surfaces();
-  void find_guide();
-  void find_places();
-  void place_joints();
-  void carry_shapes();
-  void carry_weights();
-  void carry_texture_coordinates();
-  void carry_clips();
-
-  double exaggeration_of(const std::string& shape) const;
-  PointsD pooled_delta(const Shape& shape) const;
-  detail::PieceInput piece_input() const;
-  void report_maps();
-  void count_flips(std::size_t shape, const PointsD& source_rows, const PointsD& target_rows);
-
-  const Character& source_;
-  const Character& target_;
-  const TransferOptions& options_;
-  Character result_;
-  TransferReport report_;
-
-  detail::Pool source_pool_, target_pool_;
-  std::vector<char> source_skin_, target_skin_;          // per piece
-  detail::PoolSurface source_surface_, target_surface_;  // the skins
-  Registration registration_;
-  DeltaMaps maps_;
-  std::unique_ptr<ThinPlateSpline> dense_, landmark_spline_;
-  std::unique_ptr<AttributeCarrier> carrier_;
-  PointsD warped_source_;        // pooled source vertices on the target
-  WeightMatrix source_weights_;  // pooled source vertices x joints; empty without a skin
-  std::vector<detail::PieceMotion> piece_motions_;
-  std::vector<detail::PiecePlan> plans_;
-  CarriedSkeleton skeleton_;
-};
+template <class Work>
+void Run::step(const char* name, const Work& work) {
+  report_progress(options_.progress, name, static_cast<double>(report_.steps.size()) / step_count);
+  const auto start = std::chrono::steady_clock::now();
+  work();
+  const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+  report_.steps.push_back({name, seconds.count()});
+}
 
 void Run::check_request() const {
   if (source_.parts.empty()) throw invalid_input("source", "has no mesh", "a rigged face");
   if (target_.parts.empty()) throw invalid_input("target", "has no mesh", "a face");
-  if (source_.shapes.empty() && source_.skins.empty())
+  if (source_.shapes.empty() && source_.skins.empty() && source_.objects.empty() && source_.wires.empty())
     throw invalid_input("source", "has neither shapes nor joints: there is no rig to transfer",
                         "a character with shapes, joints or both (`mien assemble` makes one of OBJ files)");
   if (!std::isfinite(options_.exaggeration))
@@ -133,12 +84,12 @@ void Run::check_request() const {
 
 void Run::read_surfaces() {
   report_.pairs = pair_landmarks(source_, target_);
-  source_pool_ = detail::pool(source_);
-  target_pool_ = detail::pool(target_);
-  source_skin_ = detail::skin_pieces(source_pool_, source_, report_.pairs.source);
-  target_skin_ = detail::skin_pieces(target_pool_, target_, report_.pairs.target);
-  source_surface_ = detail::select_pieces(source_pool_, source_skin_);
-  target_surface_ = detail::select_pieces(target_pool_, target_skin_);
+  source_pool_ = pool(source_);
+  target_pool_ = pool(target_);
+  source_skin_ = skin_pieces(source_pool_, source_, report_.pairs.source);
+  target_skin_ = skin_pieces(target_pool_, target_, report_.pairs.target);
+  source_surface_ = select_pieces(source_pool_, source_skin_);
+  target_surface_ = select_pieces(target_pool_, target_skin_);
   for (const auto* side : {&source_surface_, &target_surface_})
     if (side->surface.triangles.rows() == 0)
       throw invalid_input(side == &source_surface_ ? "source" : "target", "has no faces under its landmarks",
@@ -153,13 +104,14 @@ void Run::read_surfaces() {
 void Run::find_guide() {
   const PointsD from = report_.pairs.source_positions(), to = report_.pairs.target_positions();
   landmark_spline_ = std::make_unique<ThinPlateSpline>(from, to);
-  if (options_.method == TransferMethod::thesis) {
+  if (thesis()) {
     registration_ = thesis_registration(source_surface_.surface, target_surface_.surface, from, to);
-  } else {
+  } else if (!register_twin(from, to)) {
     RegistrationOptions registration;
     registration.progress = options_.progress;
     registration_ =
         register_surfaces(source_surface_.surface, target_surface_.surface, from, to, registration);
+    if (twin_) keep_twin();
   }
   report_.similarity = registration_.similarity;
   report_.unit = registration_.unit;
@@ -168,7 +120,8 @@ void Run::find_guide() {
   maps_.aligned = registration_.similarity(maps_.positions);
   maps_.landmarks = landmark_spline_.get();
   maps_.landmark_image = (*landmark_spline_)(maps_.positions);
-  if (options_.method == TransferMethod::thesis && options_.deltas != DeltaModel::warp) return;
+  model_ = thesis() && options_.deltas == DeltaModel::automatic ? DeltaModel::thesis : options_.deltas;
+  if (thesis() && options_.deltas != DeltaModel::warp) return;
   maps_.samples = farthest_points(maps_.aligned, most_samples);
   dense_ = std::make_unique<ThinPlateSpline>(
       dense_spline(maps_.aligned, registration_.guide, registration_.similarity(from), to,
@@ -177,43 +130,72 @@ void Run::find_guide() {
   maps_.dense_image = (*dense_)(maps_.aligned);
 }
 
+/// Looks whether the target is the source with another mesh; true where no registration is needed then.
+bool Run::register_twin(const PointsD& from, const PointsD& to) {
+  twin_ =
+      find_twin({source_pool_.positions, source_pool_.triangles},
+                {target_pool_.positions, target_pool_.triangles}, {Similarity{}, fit_similarity(from, to)});
+  if (!twin_) return false;
+  const Surface &source = source_surface_.surface, &target = target_surface_.surface;
+  twin_skin_ = twin_of_surfaces(*twin_, source_surface_, target_surface_, source_pool_.triangles.rows());
+  if (!twin_skin_.whole()) return false;
+  registration_.similarity = twin_->placement;
+  registration_.unit = face_size(to, target.positions);
+  registration_.guide = twin_->placement(source.positions);
+  kept_.assign(static_cast<std::size_t>(source.positions.rows()), 1);
+  return true;
+}
+
+/// After a registration: what is the source's own surface stays exactly that.
+void Run::keep_twin() {
+  const Surface &source = source_surface_.surface, &target = target_surface_.surface;
+  registration_.similarity = twin_->placement;
+  kept_ = kept_vertices(twin_skin_, source, target, kept_reach * registration_.unit);
+  settle_guide(twin_skin_, kept_, source, registration_.guide);
+}
+
+std::vector<SourcePoint> Run::find_points() const {
+  const Surface &source = source_surface_.surface, &target = target_surface_.surface;
+  if (thesis()) return thesis_correspondence(registration_, source, target);
+  if (twin_ && twin_skin_.whole()) return twin_skin_.points;
+  std::vector<SourcePoint> points = find_correspondence(registration_, source, target);
+  TearInput tears{source_.shapes.size(),
+                  [&](std::size_t s) {
+                    return registration_.similarity.of_vectors(
+                        pooled_delta(source_.shapes[s])(source_surface_.vertices, Eigen::all));
+                  },
+                  {},
+                  registration_.unit};
+  if (source_weights_.rows() > 0) tears.weights = select_rows(source_weights_, source_surface_.vertices);
+  reject_torn(tears, source, target, points);
+  for (std::size_t v = 0; v < twin_skin_.points.size(); ++v)
+    if (twin_skin_.points[v].accepted) points[v] = twin_skin_.points[v];
+  return points;
+}
+
 void Run::find_places() {
-  const bool thesis = options_.method == TransferMethod::thesis;
   const Surface &source = source_surface_.surface, &target = target_surface_.surface;
   if (!source_.skins.empty())
-    source_weights_ = detail::pooled_skin_weights(source_, source_pool_, list_joints(source_));
-  std::vector<SourcePoint> points = thesis ? thesis_correspondence(registration_, source, target)
-                                           : find_correspondence(registration_, source, target);
-  if (!thesis) {
-    TearInput tears{source_.shapes.size(),
-                    [&](std::size_t s) {
-                      return registration_.similarity.of_vectors(
-                          pooled_delta(source_.shapes[s])(source_surface_.vertices, Eigen::all));
-                    },
-                    {},
-                    registration_.unit};
-    if (source_weights_.rows() > 0)
-      tears.weights = detail::select_rows(source_weights_, source_surface_.vertices);
-    reject_torn(tears, source, target, points);
-  }
-  carrier_ = std::make_unique<AttributeCarrier>(std::move(points), source, target);
-  warped_source_ = thesis ? (*landmark_spline_)(source_pool_.positions)
-                          : (*dense_)(registration_.similarity(source_pool_.positions));
+    source_weights_ = pooled_skin_weights(source_, source_pool_, list_joints(source_));
+  carrier_ = std::make_unique<AttributeCarrier>(find_points(), source, target);
+  warped_source_ = thesis() ? (*landmark_spline_)(source_pool_.positions)
+                            : (*dense_)(registration_.similarity(source_pool_.positions));
   for (std::size_t r = 0; r < source_surface_.vertices.size(); ++r)
     warped_source_.row(source_surface_.vertices[r]) = registration_.guide.row(static_cast<Eigen::Index>(r));
-  piece_motions_ = detail::piece_motions(
+  piece_motions_ = piece_motions(
       source_pool_, source_skin_, source_.shapes.size(),
       [&](std::size_t s) { return pooled_delta(source_.shapes[s]); }, source_weights_,
       registration_.unit / registration_.similarity.scale);
-  plans_ = detail::plan_pieces(piece_input());
-  for (const detail::PiecePlan& plan : plans_)
-    report_.pieces.push_back({target_pool_.piece_name[at(plan.piece)],
-                              std::string(detail::name_of(plan.kind)),
-                              std::string(detail::name_of(plan.way))});
+  plans_ = plan_pieces(piece_input());
+  for (const PiecePlan& plan : plans_)
+    report_.pieces.push_back({target_pool_.piece_name[at(plan.piece)], std::string(name_of(plan.kind)),
+                              std::string(name_of(plan.way))});
+  aligned_query_ = std::make_unique<SurfaceQuery>(maps_.aligned, source.triangles);
+  target_query_ = std::make_unique<SurfaceQuery>(target.positions, target.triangles);
   report_maps();
 }
 
-detail::PieceInput Run::piece_input() const {
+PieceInput Run::piece_input() const {
   return {source_pool_,
           target_pool_,
           source_skin_,
@@ -255,50 +237,6 @@ void Run::report_maps() {
          "may");
 }
 
-void Run::place_joints() {
-  const Similarity& similarity = registration_.similarity;
-  const bool thesis = options_.method == TransferMethod::thesis;
-  SpaceMap map;
-  if (thesis) {
-    map.position = [&](const Eigen::Vector3d& x) { return (*landmark_spline_)(x); };
-    map.rotation = [&](const Eigen::Vector3d& x) { return closest_rotation(landmark_spline_->jacobian(x)); };
-    map.scale = [&](const Eigen::Vector3d& x) {
-      return std::cbrt(std::abs(landmark_spline_->jacobian(x).determinant()));
-    };
-  } else {
-    const detail::PiecePoints inner = detail::piece_points(piece_input(), plans_);
-    const Eigen::Index skin = maps_.aligned.rows(), all = skin + inner.aligned.rows();
-    PointsD from(all, 3), to(all, 3);
-    from << maps_.aligned, inner.aligned;
-    to << registration_.guide, inner.target;
-    // A vertex counts by its area, so that dense eyes do not outweigh what lies nearer; a piece's point as a thousandth
-    // of the skin.
-    Eigen::VectorXd weights = Eigen::VectorXd::Constant(all, 1e-3);
-    const Eigen::VectorXd areas = vertex_areas(maps_.aligned, source_surface_.surface.triangles);
-    weights.head(skin) = (areas / areas.sum()).cwiseMax(1e-9);
-    const auto local = std::make_shared<MovingSimilarity>(
-        std::move(from), std::move(to), joint_softness * registration_.unit, std::move(weights));
-    map.position = [local, &similarity](const Eigen::Vector3d& x) { return (*local)(similarity(x)); };
-    map.rotation = [&similarity](const Eigen::Vector3d&) { return similarity.rotation; };
-    map.scale = [local, &similarity](const Eigen::Vector3d& x) {
-      return similarity.scale * local->at(similarity(x)).scale;
-    };
-  }
-  result_ = detail::bare_target(target_, target_pool_, !source_.skins.empty());
-  if (source_.skins.empty()) {
-    skeleton_.node_of.assign(source_.nodes.size(), -1);
-    return;
-  }
-  skeleton_ = carry_skeleton(source_, map, static_cast<int>(result_.nodes.size()));
-  result_.nodes.insert(result_.nodes.end(), skeleton_.nodes.begin(), skeleton_.nodes.end());
-  result_.skins.push_back(skeleton_.skin);
-  for (detail::PiecePlan& plan : plans_) {
-    const Eigen::Vector3d centre =
-        target_pool_.positions(plan.vertices, Eigen::all).colwise().mean().transpose();
-    plan.growth = map.scale(similarity.inverse()(centre));
-  }
-}
-
 PointsD Run::pooled_delta(const Shape& shape) const {
   PointsD delta = PointsD::Zero(source_pool_.positions.rows(), 3);
   for (const PartDelta& part : shape.parts) {
@@ -320,37 +258,39 @@ void Run::carry_shapes() {
   const std::size_t count = source_.shapes.size();
   report_.flips.assign(count, 0);
   report_.source_flips.assign(count, 0);
-  if (count == 0) return;
   maps_.scale = local_scale(maps_.aligned, registration_.guide, source_surface_.surface.triangles,
                             scale_radius * registration_.unit);
-  const auto skin_delta = [&](std::size_t s) {
-    return PointsD(pooled_delta(source_.shapes[s])(source_surface_.vertices, Eigen::all));
-  };
-  ContactModel contact(source_surface_.surface, registration_, maps_);
-  DeltaModel model = options_.deltas;
-  if (options_.method == TransferMethod::thesis && model == DeltaModel::automatic) model = DeltaModel::thesis;
-  std::vector<std::string> names;
-  for (const Shape& shape : source_.shapes) names.push_back(shape.name);
-  const bool close_lids =
-      options_.close_lids && options_.method != TransferMethod::thesis &&
-      (model == DeltaModel::automatic || model == DeltaModel::local || model == DeltaModel::warp);
-  if (close_lids || model == DeltaModel::automatic) contact.look_at_shapes(names, skin_delta);
-  report_.deltas = contact.decide(model);
-
-  result_.shapes.resize(count);
+  if (twin_)
+    keep_scale(kept_, maps_.aligned, source_surface_.surface.triangles, registration_.unit, maps_.scale);
   result_.sliders = source_.sliders;
   result_.correctives = source_.correctives;
   result_.expressions = source_.expressions;
-  const detail::PieceInput pieces = piece_input();
-  const std::vector<detail::Ball> balls = options_.method == TransferMethod::thesis
-                                              ? std::vector<detail::Ball>()
-                                              : detail::eye_balls(pieces, plans_);
+  if (count == 0) return;
+  const auto skin_delta = [&](std::size_t s) {
+    return PointsD(pooled_delta(source_.shapes[s])(source_surface_.vertices, Eigen::all));
+  };
+  if (twin_ && model_ == DeltaModel::automatic) model_ = DeltaModel::local;
+  ContactModel contact(source_surface_.surface, registration_, maps_);
+  std::vector<std::string> names;
+  for (const Shape& shape : source_.shapes) names.push_back(shape.name);
+  const bool close_lids =
+      options_.close_lids && !thesis() && !(twin_ && twin_skin_.whole()) &&
+      (model_ == DeltaModel::automatic || model_ == DeltaModel::local || model_ == DeltaModel::warp);
+  if (close_lids || model_ == DeltaModel::automatic) contact.look_at_shapes(names, skin_delta);
+  report_.deltas = contact.decide(model_);
+  if (twin_) report_.deltas.reason = "the target is the source's own surface with another mesh";
+
+  result_.shapes.resize(count);
+  const RigMap rig = rig_map();
+  const PieceInput pieces = piece_input();
+  const double least = twin_ ? least_twin_delta : least_delta;
+  const std::vector<Ball> balls = thesis() ? std::vector<Ball>() : eye_balls(pieces, plans_);
   parallel_for(count, 1, [&](std::size_t begin, std::size_t) {
     const std::size_t s = begin;
     const Shape& shape = source_.shapes[s];
     const PointsD pooled = pooled_delta(shape);
     const PointsD source_rows = pooled(source_surface_.vertices, Eigen::all);
-    PointsD moved = carry_deltas(maps_, model, report_.deltas.warp_share, source_rows);
+    PointsD moved = carry_deltas(maps_, model_, report_.deltas.warp_share, source_rows);
     if (close_lids) {
       const double share = contact.lid_warp_share(s, moved);
       if (share > 0)
@@ -359,98 +299,34 @@ void Run::carry_shapes() {
     }
     const double exaggeration = exaggeration_of(shape.name);
     PointsD skin = exaggeration * PointsD((*carrier_)(moved));
-    if (close_lids && contact.closes_lid(s))
-      detail::keep_out_of_eyes(balls, target_surface_.surface.positions, skin);
+    if (close_lids && contact.closes_lid(s)) keep_out_of_eyes(balls, target_surface_.surface.positions, skin);
     PointsD target = PointsD::Zero(target_pool_.positions.rows(), 3);
     for (std::size_t r = 0; r < target_surface_.vertices.size(); ++r)
       target.row(target_surface_.vertices[r]) = skin.row(static_cast<Eigen::Index>(r));
-    for (const detail::PiecePlan& plan : plans_) {
-      const PointsD piece = detail::carry_piece(pieces, plan, exaggeration * pooled, skin);
+    for (const PiecePlan& plan : plans_) {
+      const PointsD piece = carry_piece(pieces, plan, exaggeration * pooled, skin);
       for (std::size_t i = 0; i < plan.vertices.size(); ++i)
         target.row(plan.vertices[i]) = piece.row(static_cast<Eigen::Index>(i));
     }
+    if (twin_)
+      set_twin_rows(*twin_, source_pool_.triangles, twin_->placement.of_vectors(exaggeration * pooled),
+                    target);
     count_flips(s, source_rows, skin);
-    result_.shapes[s] =
-        detail::shape_of_target(shape, target_pool_, result_, target, least_delta * registration_.unit);
+    result_.shapes[s] = shape_of_target(shape, target_pool_, result_, target, least * registration_.unit);
+    result_.shapes[s].wires = carry_wire_moves(source_, shape.wires, rig, exaggeration);
+    result_.shapes[s].objects = carry_object_moves(source_, shape.objects, rig, exaggeration);
   });
 }
 
 void Run::count_flips(std::size_t shape, const PointsD& source_rows, const PointsD& target_rows) {
-  report_.source_flips[shape] = detail::flipped_triangles(source_surface_.surface, source_rows);
-  report_.flips[shape] = detail::flipped_triangles(target_surface_.surface, target_rows);
+  report_.source_flips[shape] = flipped_triangles(source_surface_.surface, source_rows);
+  report_.flips[shape] = flipped_triangles(target_surface_.surface, target_rows);
 }
 
-void Run::carry_weights() {
-  if (source_.skins.empty()) return;
-  const Eigen::Index joints = source_weights_.cols();
-  const WeightMatrix skin_source = detail::select_rows(source_weights_, source_surface_.vertices);
-  const WeightMatrix skin = limit_influences((*carrier_)(skin_source), options_.max_influences);
-  Eigen::Index head_joint = 0;
-  Eigen::VectorXd total = Eigen::VectorXd::Zero(joints);
-  for (Eigen::Index v = 0; v < skin.outerSize(); ++v)
-    for (WeightMatrix::InnerIterator entry(skin, v); entry; ++entry) total[entry.col()] += entry.value();
-  total.maxCoeff(&head_joint);
-
-  std::vector<Eigen::Triplet<double>> entries;
-  const auto append = [&](const WeightMatrix& rows, const std::vector<int>& vertices) {
-    for (Eigen::Index r = 0; r < rows.outerSize(); ++r)
-      for (WeightMatrix::InnerIterator entry(rows, r); entry; ++entry)
-        entries.emplace_back(vertices[static_cast<std::size_t>(r)], static_cast<int>(entry.col()),
-                             entry.value());
-  };
-  append(skin, target_surface_.vertices);
-  const detail::PieceInput pieces = piece_input();
-  for (const detail::PiecePlan& plan : plans_)
-    append(limit_influences(
-               detail::carry_piece_weights(pieces, plan, source_weights_, skin, static_cast<int>(head_joint)),
-               options_.max_influences),
-           plan.vertices);
-  WeightMatrix all(target_pool_.positions.rows(), joints);
-  all.setFromTriplets(entries.begin(), entries.end());
-  for (std::size_t p = 0; p < result_.parts.size(); ++p) {
-    result_.parts[p].skin = 0;
-    result_.parts[p].skin_weights = to_skin_weights(all, target_pool_.welded[p]);
-  }
-}
-
-void Run::carry_texture_coordinates() {
-  const auto source = detail::skin_uvs(source_, source_pool_, source_surface_);
-  if (!source) return;
-  const int material = detail::skin_material(source_, source_pool_, source_surface_);
-  int shared = -1;
-  for (std::size_t p = 0; p < result_.parts.size(); ++p) {
-    Mesh& mesh = result_.parts[p].mesh;
-    if (!mesh.uvs.empty() && !options_.replace_uvs) continue;
-    detail::assign_uvs(*source, registration_.guide, target_pool_, target_surface_, static_cast<int>(p),
-                       mesh);
-    if (material < 0 || mesh.uvs.empty()) continue;
-    if (shared < 0) shared = copy_material(source_, material, result_.appearance);
-    detail::hang_material(shared, result_.appearance, mesh);
-  }
-}
-
-void Run::carry_clips() {
-  std::vector<int> shape_of(source_.shapes.size());
-  for (std::size_t s = 0; s < shape_of.size(); ++s) shape_of[s] = static_cast<int>(s);
-  std::vector<std::string> dropped;
-  for (const Clip& clip : source_.clips)
-    result_.clips.push_back(carry_clip(source_, clip, skeleton_, shape_of, dropped));
-  if (!dropped.empty())
-    warn(std::to_string(dropped.size()) + " channels animate what the target does not get (" +
-             dropped.front() + " ...)",
-         "skin these parts to joints on the source to have them animated on the target");
-  std::vector<std::string> loose;
-  result_.constraints = carry_constraints(source_, result_, skeleton_, loose);
-  result_.controls = carry_controls(source_, result_, skeleton_, loose);
-  if (!loose.empty())
-    warn(std::to_string(loose.size()) + " constraints and controls are of what the target does not get (" +
-             loose.front() + " ...)",
-         "skin parts to these joints on the source");
-}
-
-}  // namespace
+}  // namespace detail
 
 TransferResult transfer(const Character& source, const Character& target, const TransferOptions& options) {
+  using detail::Run;
   const std::size_t shown = shown_part_count(target);
   if (shown == target.parts.size() && shown_part_count(source) == source.parts.size())
     return Run(source, target, options)();

@@ -74,6 +74,10 @@ Character bare_target(const Character& target, const Pool& pool, bool skinned) {
   result.constraints.clear();
   result.controls.clear();
   result.skins.clear();
+  result.wires.clear();
+  result.objects.clear();
+  result.constraints.clear();
+  result.controls.clear();
   for (std::size_t p = 0; p < result.parts.size(); ++p) {
     result.parts[p].skin = -1;
     result.parts[p].skin_weights = {};

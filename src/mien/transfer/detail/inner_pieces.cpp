@@ -447,26 +447,29 @@ PointsD carry_piece(const PieceInput& in, const PiecePlan& plan, const PointsD& 
   return PointsD::Zero(static_cast<Eigen::Index>(plan.vertices.size()), 3);
 }
 
+WeightMatrix carry_piece_rows(const PieceInput& in, const PiecePlan& plan, const WeightMatrix& source_rows,
+                              const WeightMatrix& skin_rows) {
+  const bool donors = plan.way == PiecePlan::Way::donors;
+  const Triangles& triangles = donors ? in.source.triangles : in.target_surface.surface.triangles;
+  const WeightMatrix& rows = donors ? source_rows : skin_rows;
+  std::vector<Eigen::Triplet<double>> entries;
+  for (std::size_t i = 0; i < plan.vertices.size() && plan.way != PiecePlan::Way::still; ++i)
+    for (int k = 0; k < 3; ++k)
+      for (WeightMatrix::InnerIterator entry(rows, triangles(plan.triangle[i], k)); entry; ++entry)
+        entries.emplace_back(static_cast<int>(i), static_cast<int>(entry.col()),
+                             plan.barycentric[i][k] * entry.value());
+  WeightMatrix result(static_cast<Eigen::Index>(plan.vertices.size()), rows.cols());
+  result.setFromTriplets(entries.begin(), entries.end());
+  return result;
+}
+
 WeightMatrix carry_piece_weights(const PieceInput& in, const PiecePlan& plan,
                                  const WeightMatrix& source_weights, const WeightMatrix& skin_weights,
                                  int head_joint) {
-  const bool donors = plan.way == PiecePlan::Way::donors;
-  const Triangles& triangles = donors ? in.source.triangles : in.target_surface.surface.triangles;
-  const WeightMatrix& weights = donors ? source_weights : skin_weights;
-  std::vector<Eigen::Triplet<double>> entries;
-  for (std::size_t i = 0; i < plan.vertices.size(); ++i) {
-    const int row = static_cast<int>(i);
-    double sum = 0;
-    for (int k = 0; k < 3 && plan.way != PiecePlan::Way::still; ++k)
-      for (WeightMatrix::InnerIterator entry(weights, triangles(plan.triangle[i], k)); entry; ++entry) {
-        entries.emplace_back(row, static_cast<int>(entry.col()), plan.barycentric[i][k] * entry.value());
-        sum += plan.barycentric[i][k] * entry.value();
-      }
-    if (!(sum > 0)) entries.emplace_back(row, head_joint, 1.0);
-  }
-  WeightMatrix result(static_cast<Eigen::Index>(plan.vertices.size()), weights.cols());
-  result.setFromTriplets(entries.begin(), entries.end());
-  return result;
+  WeightMatrix weights = carry_piece_rows(in, plan, source_weights, skin_weights);
+  for (Eigen::Index v = 0; v < weights.rows(); ++v)
+    if (!(weights.row(v).sum() > 0)) weights.coeffRef(v, head_joint) = 1;
+  return weights;
 }
 
 std::string_view name_of(PieceKind kind) {

@@ -87,6 +87,10 @@ WeightMatrix carry_piece_weights(const PieceInput& input, const PiecePlan& plan,
                                  const WeightMatrix& source_weights, const WeightMatrix& skin_weights,
                                  int head_joint);
 
+/// Other per-vertex attributes (#vertices of the plan x K) the same way, none on still pieces.
+WeightMatrix carry_piece_rows(const PieceInput& input, const PiecePlan& plan, const WeightMatrix& source_rows,
+                              const WeightMatrix& skin_rows);
+
 std::string_view name_of(PieceKind kind);
 std::string_view name_of(PiecePlan::Way way);
 

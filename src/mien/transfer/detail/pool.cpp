@@ -99,6 +99,43 @@ PoolSurface select_pieces(const Pool& pool, const std::vector<char>& pieces) {
   return result;
 }
 
+SurfacePoint surface_point(const Pool& pool, const PoolSurface& surface, const SurfaceQuery::Hit& hit) {
+  const auto at = [](int index) { return static_cast<std::size_t>(index); };
+  const int triangle = surface.triangles[at(hit.triangle)];
+  SurfacePoint point;
+  point.part = pool.triangle_part[at(triangle)];
+  point.face = pool.triangle_face[at(triangle)];
+  point.barycentric = hit.barycentric;
+  // Triangles of a face are a fan in order: this one's number within it.
+  int fan = 0;
+  for (int t = triangle;
+       t > 0 && pool.triangle_face[at(t - 1)] == point.face && pool.triangle_part[at(t - 1)] == point.part;
+       --t)
+    ++fan;
+  point.corners = {0, fan + 1, fan + 2};
+  return point;
+}
+
+Twin twin_of_surfaces(const Twin& twin, const PoolSurface& source, const PoolSurface& target,
+                      Eigen::Index triangles) {
+  std::vector<int> row_of(static_cast<std::size_t>(triangles), -1);
+  for (std::size_t t = 0; t < source.triangles.size(); ++t)
+    row_of[static_cast<std::size_t>(source.triangles[t])] = static_cast<int>(t);
+  Twin result;
+  result.placement = twin.placement;
+  std::size_t close = 0;
+  for (const int vertex : target.vertices) {
+    SourcePoint point = twin.points[static_cast<std::size_t>(vertex)];
+    if (point.accepted) point.triangle = row_of[static_cast<std::size_t>(point.triangle)];
+    point.accepted = point.accepted && point.triangle >= 0;
+    close += point.accepted;
+    result.points.push_back(point);
+  }
+  result.share =
+      static_cast<double>(close) / static_cast<double>(std::max<std::size_t>(1, result.points.size()));
+  return result;
+}
+
 std::vector<char> skin_pieces(const Pool& pool, const Character& character,
                               const std::vector<LandmarkPoint>& landmarks) {
   std::vector<int> count(static_cast<std::size_t>(pool.piece_count), 0);

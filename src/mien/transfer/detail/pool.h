@@ -6,7 +6,9 @@
 
 #include "mien/character/character.h"
 #include "mien/character/landmark_points.h"
+#include "mien/geometry/surface_query.h"
 #include "mien/transfer/register_surfaces.h"
+#include "mien/transfer/twin.h"
 
 namespace mien::detail {
 
@@ -36,6 +38,14 @@ struct PoolSurface {
   std::vector<int> triangles;  ///< #T of the surface: triangle of the pool
 };
 PoolSurface select_pieces(const Pool& pool, const std::vector<char>& pieces);
+
+/// The point at one corner mix of one triangle of `surface`, as its file numbers it.
+SurfacePoint surface_point(const Pool& pool, const PoolSurface& surface, const SurfaceQuery::Hit& hit);
+
+/// The twin of two pools as the twin of two of their surfaces: what lies on a piece that is not in `source` is not accepted.
+///   triangles  of the source's pool
+Twin twin_of_surfaces(const Twin& twin, const PoolSurface& source, const PoolSurface& target,
+                      Eigen::Index triangles);
 
 /// The pieces that are the face's skin: those that hold landmarks (a stray landmark or two on a tooth or lash does not
 /// make it skin).
