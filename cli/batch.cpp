@@ -117,8 +117,9 @@ json do_job(const TransferJob& job, const Request& request, Sources& sources) {
   }
   Character source = *sources.get(job);
   Character target = load_face(job.target.string(), job.target_landmarks.string());
-  find_missing({job.source.string(), source}, {job.target.string(), target}, {});
-  const TransferResult result = transfer(source, target);
+  TransferOptions options;
+  find_missing({job.source.string(), source}, {job.target.string(), target}, options);
+  const TransferResult result = transfer(source, target, options);
   make_folder_of(job.output);
   save(result.character, job.output, {request.compress});
   json warnings = json::array();
