@@ -14,8 +14,9 @@ using nlohmann::json;
 json do_transfer(const TransferJob& job, const JobsRequest& request, SharedFaces& sources) {
   Character source = *sources.get(job.source, job.source_landmarks);
   Character target = load_face(job.target.string(), job.target_landmarks.string());
-  find_missing({job.source.string(), source}, {job.target.string(), target}, {});
-  const TransferResult result = transfer(source, target);
+  TransferOptions options;
+  find_missing({job.source.string(), source}, {job.target.string(), target}, options);
+  const TransferResult result = transfer(source, target, options);
   make_folder_of(job.output);
   save(result.character, job.output, {request.compress});
   json warnings = json::array();

@@ -68,20 +68,27 @@ Character load_face(const std::string& path, const std::string& landmarks) {
   return character;
 }
 
-std::vector<FoundSide> find_missing(const Side& source, const Side& target, const Progress& progress) {
+std::vector<FoundSide> find_missing(const Side& source, const Side& target, TransferOptions& transfer) {
   std::vector<FoundSide> sides;
   if (shared_marks(source.face, target.face) >= enough_pairs) return sides;
   FindLandmarksOptions options;
-  options.progress = progress;
+  options.progress = transfer.progress;
   if (marks(source.face) < enough_pairs && marks(target.face) >= enough_pairs) {
     if (!take_landmarks(target.face, source.face)) complete(source, target.face, options, sides);
-    return sides;
+  } else {
+    if (marks(source.face) < enough_pairs) {
+      complete(source, make_sample("human"), options, sides);
+      options.like_facing = sides[0].found.facing;
+    }
+    if (take_landmarks(source.face, target.face)) return sides;
+    complete(target, source.face, options, sides);
   }
-  if (marks(source.face) < enough_pairs) {
-    complete(source, make_sample("human"), options, sides);
-    options.like_facing = sides[0].found.facing;
-  }
-  if (!take_landmarks(source.face, target.face)) complete(target, source.face, options, sides);
+  if (sides.empty()) return sides;
+  const FoundLandmarks& found = sides.back().found;
+  for (const FoundLandmark& one : found.landmarks)
+    if (!one.given) transfer.found_landmarks.push_back(one.landmark.name);
+  for (const LandmarkCurve& curve : found.curves) transfer.found_landmarks.push_back(curve.name);
+  transfer.landmarks_hold = found.alike;
   return sides;
 }
 

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "mien/character/character.h"
-#include "mien/core/progress.h"
 #include "mien/transfer/find_landmarks.h"
+#include "mien/transfer/transfer.h"
 
 namespace mien::cli {
 
@@ -27,8 +27,9 @@ struct FoundSide {
 };
 
 /// Sees to it that both sides have landmarks of the same names: a side that has few or none gets the other's, and where
-/// neither has enough, the source gets the built-in human's first. What was given stays.
+/// neither has enough, the source gets the built-in human's first. What was given stays; `transfer`
+/// is told what was found.
 ///   throws  Error naming the file: no face is found
-std::vector<FoundSide> find_missing(const Side& source, const Side& target, const Progress& progress);
+std::vector<FoundSide> find_missing(const Side& source, const Side& target, TransferOptions& options);
 
 }  // namespace mien::cli

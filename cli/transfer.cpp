@@ -137,7 +137,7 @@ void run(Request& request, const Common& common) {
   if (!folder.empty()) make_folder(folder);
   request.options.progress = progress_bar(common);
   const std::vector<FoundSide> found =
-      find_missing({request.source, source}, {request.target, target}, request.options.progress);
+      find_missing({request.source, source}, {request.target, target}, request.options);
   TransferResult result = transfer(source, target, request.options);
   std::optional<Report> report;
   if (!folder.empty())

@@ -28,6 +28,11 @@ using detail::TemplateHead;
 constexpr double accept_score = 0.07, refuse_score = 0.09, least_likeness = 0.5;
 /// Trust in the placed landmarks while the template is registered.
 constexpr double virtual_trust = 0.05;
+/// Likeness of two heads that need no help of normals and of a second look.
+constexpr double twins = 0.9;
+/// Times that the head is registered, and how far its two sides are evened out between (.5: their mean).
+constexpr int passes = 3;
+constexpr double evenness = 0.5;
 /// A given point further than this from where the others put it, in face sizes, is doubted.
 constexpr double least_surprise = 0.05;
 
@@ -89,12 +94,15 @@ class Search {
     placed_ = detail::place_head(head_, sought_, known_, options_.progress).front();
     found_.score = placed_.score.total();
     found_.likeness = placed_.score.relief;
+    found_.alike = found_.likeness > twins;
     found_.facing = placed_.placement.rotation.transpose();
     found_.unit = placed_.placement.scale;
     decide();
     if (found_.verdict == Verdict::refuse) return std::move(found_);
-    bring_onto_target();
+    bring_onto_target(placed_.placement(head_.points));
+    doubt();
     correct();
+    for (int pass = 1; pass < passes && !found_.alike; ++pass) again();
     read_off();
     return std::move(found_);
   }
@@ -102,10 +110,13 @@ class Search {
  private:
   void read_given();
   void decide();
-  void bring_onto_target();
+  void bring_onto_target(const PointsD& goals);
+  void even_out();
+  void again();
+  void read_residuals();
   void correct();
   void read_off();
-  void doubt(const PointsD& surprise);
+  void doubt();
   double confidence_of(std::size_t row, const SurfaceQuery::Hit& hit) const;
 
   /// Displacements between the target's model space and the canonical one.
@@ -172,12 +183,35 @@ void Search::decide() {
   }
 }
 
-void Search::bring_onto_target() {
+/// What one side of the face is off by from the head to be like, so is the other, by half.
+void Search::even_out() {
+  const PointsD found = (points_.rowwise() - placed_.placement.translation.transpose()) *
+                        placed_.placement.rotation / placed_.placement.scale;
+  const PointsD shift = found - head_.points;
+  PointsD change = PointsD::Zero(shift.rows(), 3);
+  for (Eigen::Index i = 0; i < shift.rows(); ++i) {
+    const int other = head_.mirror[at(i)];
+    if (other < 0) continue;
+    Eigen::RowVector3d image = shift.row(other);
+    image.x() *= -1;
+    change.row(i) = evenness * (image - shift.row(i));
+  }
+  points_ += to_target(change);
+}
+
+/// The registration once more, from where the landmarks were found.
+void Search::again() {
+  even_out();
+  bring_onto_target(PointsD(points_));
+  correct();
+}
+
+void Search::bring_onto_target(const PointsD& goals) {
   RegistrationOptions registration;
-  registration.landmark_trust = virtual_trust;
+  registration.landmark_trust = Eigen::VectorXd::Constant(goals.rows(), virtual_trust);
+  registration.landmarks_hold = found_.alike;
   registration.progress = options_.progress;
-  registration_ = register_surfaces(head_.skin, sought_.skin.surface, head_.points,
-                                    placed_.placement(head_.points), registration);
+  registration_ = register_surfaces(head_.skin, sought_.skin.surface, head_.points, goals, registration);
   found_.stretch = stretch_of(head_, registration_.guide);
   const SurfaceQuery own(head_.skin.positions, head_.skin.triangles);
   const PointsD guide_normals = vertex_normals(registration_.guide, head_.skin.triangles);
@@ -193,19 +227,26 @@ void Search::bring_onto_target() {
   }
 }
 
-void Search::correct() {
+void Search::read_residuals() {
+  residuals_.clear();
   for (std::size_t k = 0; k < known_.size(); ++k) {
     const Eigen::Index row = known_row_[k];
     residuals_.push_back(
         {known_row_[k], head_.points.row(row), to_canonical(known_[k].goal.transpose() - points_.row(row))});
   }
-  if (residuals_.size() > 1) doubt(detail::surprises(residuals_, head_.points, head_.mirror));
+}
+
+void Search::correct() {
+  read_residuals();
   points_ += to_target(
       detail::correction(detail::with_mirror_images(residuals_, head_.points, head_.mirror), head_.points));
 }
 
 /// Names the given points that the others contradict, and what stands there instead.
-void Search::doubt(const PointsD& surprise) {
+void Search::doubt() {
+  read_residuals();
+  if (residuals_.size() < 2) return;
+  const PointsD surprise = detail::surprises(residuals_, head_.points, head_.mirror);
   std::vector<double> size(residuals_.size());
   for (std::size_t k = 0; k < size.size(); ++k) size[k] = surprise.row(static_cast<Eigen::Index>(k)).norm();
   std::vector<double> sorted = size;

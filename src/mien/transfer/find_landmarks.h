@@ -48,8 +48,10 @@ struct FoundLandmarks {
   Verdict verdict = Verdict::refuse;
   double score = 0;     ///< how badly the head to be like fits, of the face's size: 0 is a twin
   double likeness = 0;  ///< correlation of what stands out on the two faces, 1 for a twin, 0 for an egg
-  double stretch = 0;   ///< how much it had to be bent, rms log ratio of lengths on the face
-  std::string reason;   ///< of the verdict, one sentence
+  bool alike =
+      false;  ///< so alike that closest points alone tell what is where: the same model's other identity
+  double stretch = 0;  ///< how much it had to be bent, rms log ratio of lengths on the face
+  std::string reason;  ///< of the verdict, one sentence
   std::vector<DoubtfulPoint> doubtful;
   Eigen::Matrix3d facing = Eigen::Matrix3d::Identity();  ///< turns the target to look along +Z with +Y up
   double unit = 1;                                       ///< the face's size in the target's units
@@ -62,7 +64,7 @@ struct FoundLandmarks {
 /// (register_surfaces.h) and its landmarks are read off. Any unit and orientation; inner parts (eyes, teeth) do no harm.
 ///   like     a head with 4 or more landmarks on its skin
 ///   throws   invalid_input: no faces; too few landmarks on `like`; a given name twice, a given point off the target
-///   cost     about 3 s for 14,000 vertices on either side, one core
+///   cost     about 5 s for 14,000 vertices on either side, one core
 FoundLandmarks find_landmarks(const Character& target, const Character& like,
                               const FindLandmarksOptions& options = {});
 

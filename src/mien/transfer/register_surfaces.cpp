@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <string>
 
 #include "mien/core/error.h"
 #include "mien/geometry/laplacian.h"
@@ -74,9 +75,11 @@ Eigen::VectorXd normalised_areas(const Surface& surface) {
 }
 
 void add_landmark_wishes(const std::vector<SurfaceQuery::Hit>& at, const Triangles& triangles,
-                         const PointsD& goals, double weight, std::vector<detail::Wish>& wishes) {
-  if (weight <= 0) return;
+                         const PointsD& goals, const Eigen::VectorXd& weights,
+                         std::vector<detail::Wish>& wishes) {
   for (std::size_t i = 0; i < at.size(); ++i) {
+    const double weight = weights[static_cast<Eigen::Index>(i)];
+    if (!(weight > 0)) continue;
     detail::Wish wish;
     for (int k = 0; k < 3; ++k) {
       wish.vertices[k] = triangles(at[i].triangle, k);
@@ -88,9 +91,10 @@ void add_landmark_wishes(const std::vector<SurfaceQuery::Hit>& at, const Triangl
   }
 }
 
-/// #V: 0 within `near` of a landmark, 1 from `far` on, smooth between.
+/// #V: 0 within `near` of a landmark, 1 from `far` on, smooth between; 1 where there are none.
 Eigen::VectorXd far_from(const PointsD& landmarks, const PointsD& positions, double near, double far) {
-  Eigen::VectorXd result(positions.rows());
+  Eigen::VectorXd result = Eigen::VectorXd::Ones(positions.rows());
+  if (landmarks.rows() == 0) return result;
   for (Eigen::Index v = 0; v < positions.rows(); ++v) {
     const double distance =
         std::sqrt((landmarks.rowwise() - positions.row(v)).rowwise().squaredNorm().minCoeff());
@@ -100,12 +104,21 @@ Eigen::VectorXd far_from(const PointsD& landmarks, const PointsD& positions, dou
   return result;
 }
 
+Eigen::VectorXd trust_of(const RegistrationOptions& options, Eigen::Index count) {
+  if (options.landmark_trust.size() == 0) return Eigen::VectorXd::Ones(count);
+  if (options.landmark_trust.size() != count)
+    throw invalid_input("landmark trust", "has " + std::to_string(options.landmark_trust.size()) + " numbers",
+                        "one a landmark (" + std::to_string(count) + "), or none");
+  return options.landmark_trust;
+}
+
 /// What all stages share: the two surfaces, their curves and the landmarks.
 struct Fitting {
   const Surface& source;
   const Surface fixed_surface;
   const detail::MatchSurface& fixed;
-  const PointsD& goals;
+  const PointsD &goals, &holding;
+  const Eigen::VectorXd& trust;
   const Registration& result;
   const RegistrationOptions& options;
   std::vector<detail::CurvePiece> source_curves, target_curves;
@@ -129,7 +142,7 @@ struct Fitting {
   std::vector<detail::Wish> wishes(const PointsD& positions, const Stage& stage, const Likeness& likeness,
                                    double reach) const {
     detail::MatchSurface moving(positions, source.triangles, result.source_openness, masses, boundary);
-    moving.far = far_from(goals, positions, near_landmarks, far_from_landmarks);
+    moving.far = far_from(holding, positions, near_landmarks, far_from_landmarks);
     const bool coarse = stage.stiffness >= curves_until;
     detail::MatchOptions match;
     match.least_reach = reach;
@@ -139,8 +152,7 @@ struct Fitting {
     match.bend_length = likeness.bend;
     match.most_vertices = coarse ? coarse_vertices : std::numeric_limits<int>::max();
     std::vector<detail::Wish> all = detail::match_both_ways(moving, fixed, match);
-    add_landmark_wishes(landmarks, source.triangles, goals, options.landmark_trust * stage.landmarks / 68,
-                        all);
+    add_landmark_wishes(landmarks, source.triangles, goals, stage.landmarks / 68 * trust, all);
     if (coarse) {
       const auto pulls = detail::match_curves(source_curves, {positions, source.triangles}, target_curves,
                                               fixed_surface, curve_weight);
@@ -176,7 +188,7 @@ struct Fitting {
     for (int round = 0; round < rounds; ++round) {
       const PointsD shift =
           detail::fit_polynomial(positions, wishes(positions, whole, while_stiff, reach), ridge);
-      positions += far_from(goals, positions, near, distant).asDiagonal() * shift;
+      positions += far_from(holding, positions, near, distant).asDiagonal() * shift;
     }
   }
 };
@@ -192,6 +204,8 @@ Registration register_surfaces(const Surface& source, const Surface& target, con
   const Eigen::RowVector3d centre = target_landmarks.colwise().mean();
   const auto normalise = [&](const PointsD& p) { return PointsD((p.rowwise() - centre) / result.unit); };
   const PointsD fixed_points = normalise(target.positions), goals = normalise(target_landmarks);
+  const Eigen::VectorXd trust = trust_of(options, goals.rows());
+  const PointsD holding = options.landmarks_hold ? goals : PointsD(0, 3);
 
   result.source_openness = openness(source.positions, source.triangles, openness_rays);
   result.target_openness = openness(target.positions, target.triangles, openness_rays);
@@ -199,10 +213,11 @@ Registration register_surfaces(const Surface& source, const Surface& target, con
       fixed_points, target.triangles, result.target_openness, normalised_areas(target),
       boundary_vertices(static_cast<std::size_t>(fixed_points.rows()), target.triangles));
 
-  fixed.far = far_from(goals, fixed_points, near_landmarks, far_from_landmarks);
+  fixed.far = far_from(holding, fixed_points, near_landmarks, far_from_landmarks);
 
-  Fitting fitting{source, {fixed_points, target.triangles}, fixed, goals, result, options, {}, {}, {}, {},
-                  {}};
+  Fitting fitting{
+      source, {fixed_points, target.triangles}, fixed, goals, holding, trust, result, options, {}, {}, {}, {},
+      {}};
   fitting.find_features(source_landmarks);
   const ThinPlateSpline spline(source_landmarks, goals, {options.smoothing, -1});
   PointsD start = spline(source.positions);

@@ -17,8 +17,12 @@ struct Surface {
 };
 
 struct RegistrationOptions {
-  /// Trust in the landmarks: the schedule's landmark weights are multiplied by it. 0 keeps them as the start only.
-  double landmark_trust = 1;
+  /// Trust in each landmark, #L; empty: 1. The schedule's landmark weights are multiplied by it; 0 keeps a landmark as
+  /// the start only.
+  Eigen::VectorXd landmark_trust;
+  /// Landmarks hold their surroundings in place. Those that were found by themselves do not: with false, normals say as
+  /// much around them as far from all landmarks, and the quadratic maps move the whole skin.
+  bool landmarks_hold = true;
   /// Smoothing of the starting spline (ThinPlateSpline::Options::smoothing). Landmarks that are clicked by hand are
   /// off by half a percent of the face; meeting them exactly would bend the start.
   double smoothing = 2e-2;

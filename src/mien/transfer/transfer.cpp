@@ -1,5 +1,6 @@
 #include "mien/transfer/transfer.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 
@@ -101,6 +102,20 @@ void Run::read_surfaces() {
          "nothing, if that is meant; name them alike on both sides otherwise");
 }
 
+/// None in what was found; given ones among them count as much as their share: a few that pull alone would dent the guide
+/// around them. A curve's samples are named after it.
+Eigen::VectorXd Run::trust_in(const std::vector<std::string>& landmarks) const {
+  const auto found = [&](const std::string& name) {
+    const auto& all = options_.found_landmarks;
+    return std::find(all.begin(), all.end(), name) != all.end();
+  };
+  Eigen::VectorXd given = Eigen::VectorXd::Ones(static_cast<Eigen::Index>(landmarks.size()));
+  for (std::size_t i = 0; i < landmarks.size(); ++i)
+    if (found(landmarks[i]) || found(landmarks[i].substr(0, landmarks[i].rfind('.'))))
+      given[static_cast<Eigen::Index>(i)] = 0;
+  return given.mean() * given;
+}
+
 void Run::find_guide() {
   const PointsD from = report_.pairs.source_positions(), to = report_.pairs.target_positions();
   landmark_spline_ = std::make_unique<ThinPlateSpline>(from, to);
@@ -108,6 +123,8 @@ void Run::find_guide() {
     registration_ = thesis_registration(source_surface_.surface, target_surface_.surface, from, to);
   } else if (!register_twin(from, to)) {
     RegistrationOptions registration;
+    registration.landmark_trust = trust_in(report_.pairs.names);
+    registration.landmarks_hold = options_.landmarks_hold;
     registration.progress = options_.progress;
     registration_ =
         register_surfaces(source_surface_.surface, target_surface_.surface, from, to, registration);

@@ -23,9 +23,13 @@ struct TransferOptions {
   DeltaModel deltas = DeltaModel::automatic;
   double exaggeration = 1;                           ///< all shapes' displacements times this (thesis 5.4.2)
   std::map<std::string, double> shape_exaggeration;  ///< by name, times the one above
-  int max_influences = 0;    ///< skin weights a vertex; 0: as many as the source needs
-  bool close_lids = true;    ///< let shapes that close a lid on the source close it on the target
-  bool replace_uvs = false;  ///< take the source's UVs even where the target has its own
+  /// Landmarks and curves that were found (find_landmarks.h), not given: the registration starts from them and then
+  /// goes where the surfaces say.
+  std::vector<std::string> found_landmarks;
+  bool landmarks_hold = true;  ///< RegistrationOptions::landmarks_hold
+  int max_influences = 0;      ///< skin weights a vertex; 0: as many as the source needs
+  bool close_lids = true;      ///< let shapes that close a lid on the source close it on the target
+  bool replace_uvs = false;    ///< take the source's UVs even where the target has its own
   Progress progress;
 };
 

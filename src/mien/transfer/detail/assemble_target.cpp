@@ -71,8 +71,6 @@ Character bare_target(const Character& target, const Pool& pool, bool skinned) {
   result.correctives.clear();
   result.expressions.clear();
   result.clips.clear();
-  result.constraints.clear();
-  result.controls.clear();
   result.skins.clear();
   result.wires.clear();
   result.objects.clear();

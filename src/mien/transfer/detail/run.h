@@ -50,6 +50,7 @@ class Run {
   void carry_rig();
   void carry_clips();
 
+  Eigen::VectorXd trust_in(const std::vector<std::string>& landmarks) const;
   double exaggeration_of(const std::string& shape) const;
   PointsD pooled_delta(const Shape& shape) const;
   PieceInput piece_input() const;
