@@ -8,6 +8,7 @@
 #include "mien/character/character.h"
 #include "mien/character/pose.h"
 #include "mien/character/sliders.h"
+#include "mien/geometry/bspline.h"
 
 namespace mien::test {
 
@@ -114,6 +115,57 @@ inline Pose random_pose(const Character& character, unsigned seed) {
     local.translation += random.vector(0.2);
     local.rotation = local.rotation * random.rotation(1.5);
     local.scale += random.vector(0.1);
+  }
+  return pose;
+}
+
+/// A wire without bindings.
+inline Wire random_wire(Random& random, int index, int controls) {
+  Wire wire;
+  wire.name = "wire" + std::to_string(index);
+  wire.curve.controls.resize(controls, 3);
+  for (int c = 0; c < controls; ++c) wire.curve.controls.row(c) = random.vector(1);
+  wire.curve.knots = clamped_knots(controls);
+  wire.ranges = {0.5};
+  return wire;
+}
+
+/// The random rig with three wires over all of its parts; the second does not turn.
+inline Character wired_rig(unsigned seed) {
+  Character character = random_rig(seed);
+  Random random(seed + 5000);
+  for (int w = 0; w < 3; ++w) {
+    Wire wire = random_wire(random, w, 4 + w);
+    if (w == 1) wire.turn_controls = 0;
+    for (int p = 0; p < static_cast<int>(character.parts.size()); ++p) {
+      WireBinding binding{p, {}, {}, {}};
+      for (int v = 0; v < static_cast<int>(character.parts[p].mesh.vertex_count()); ++v)
+        if (random.index(5) < 2) {
+          binding.vertices.push_back(v);
+          binding.falloff.push_back(static_cast<float>(random.number(0.1, 1)));
+          binding.parameters.push_back(static_cast<float>(random.number(0, 1)));
+        }
+      wire.bindings.push_back(binding);
+    }
+    character.wires.push_back(wire);
+  }
+  return character;
+}
+
+inline PointsD random_rows(Random& random, int rows, double size) {
+  PointsD moves(rows, 3);
+  for (int r = 0; r < rows; ++r) moves.row(r) = random.vector(size);
+  return moves;
+}
+
+/// A random pose in which two wires move, one of them twice.
+inline Pose wired_pose(const Character& character, unsigned seed) {
+  Pose pose = random_pose(character, seed);
+  Random random(seed + 7000);
+  for (const int w : {0, 2, 0}) {
+    const Wire& wire = character.wires[w];
+    pose.wires.push_back({w, random_rows(random, wire.curve.control_count(), 0.3), random.number(-0.5, 0.5),
+                          random_rows(random, wire.turn_controls, 0.4)});
   }
   return pose;
 }

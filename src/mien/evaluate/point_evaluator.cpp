@@ -17,6 +17,7 @@
 #include "mien/evaluate/detail/check_pose.h"
 #include "mien/evaluate/detail/joint_chain.h"
 #include "mien/evaluate/detail/point_sites.h"
+#include "mien/evaluate/detail/wire_motion.h"
 
 namespace mien {
 
@@ -48,12 +49,17 @@ Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& v) {
 
 struct PointEvaluator::Impl : detail::PointSites {
   Impl(const Character& character, const std::vector<SurfacePoint>& points)
-      : PointSites(character, points), outline(detail::outline(character)) {}
+      : PointSites(character, points),
+        outline(detail::outline(character)),
+        wire_rows(character),
+        wires(wire_rows) {}
 
   Character outline;
+  detail::WireRows wire_rows;
 
   // Of the last pose.
-  Eigen::MatrixXd weights;               // #S x parts
+  Eigen::MatrixXd weights;  // #S x parts
+  detail::WireMotion wires;
   Eigen::MatrixXi is_exception;          // #S x parts: the shape weight is the part's own
   std::vector<Affine> model, carried;    // by link, by carrier
   std::vector<StretchedMotion> motions;  // by carrier, when a site is of a dual quaternion skin
@@ -100,6 +106,7 @@ void PointEvaluator::Impl::set_weights(const Pose& pose) {
 void PointEvaluator::Impl::pose_sites(const Pose& pose) {
   detail::check_pose(outline, pose);
   set_weights(pose);
+  wires.set(wire_rows, pose.wires);
   chain.evaluate(outline.nodes, pose, model, carried);
   if (!motions.empty()) split_motions();
   for (std::size_t i = 0; i < sites.size(); ++i) {
@@ -107,6 +114,8 @@ void PointEvaluator::Impl::pose_sites(const Pose& pose) {
     Eigen::Vector3d x = site.neutral;
     for (int d = site.delta_begin; d < site.delta_end; ++d)
       x += weights(deltas[d].shape, site.column) * deltas[d].move;
+    for (int w = site.wire_begin; w < site.wire_end && !wires.is_still; ++w)
+      x += to_part[site.column] * wires.of(wire_rows, wire_entries[w]);
     const auto row = static_cast<Eigen::Index>(i);
     shaped.row(row) = x;
     placed.row(row) = place(site, x);
@@ -191,7 +200,7 @@ void PointEvaluator::Impl::walk_below(int link, const Pose& pose) {
     const auto [node, parent] = links[l];
     if (parent < 0 || !is_below[parent]) continue;
     is_below[l] = 1;
-    below[l] = below[parent] * detail::affine(local_matrix(outline.nodes[node], pose.locals[node]));
+    below[l] = below[parent] * detail::local_affine(outline.nodes[node], pose.locals[node]);
   }
 }
 

@@ -21,6 +21,8 @@ struct Affine {
   }
 };
 Affine affine(const Eigen::Matrix4d& matrix);
+/// local_matrix of pose.h, without its last row.
+Affine local_affine(const Node& node, const Transform& local);
 
 /// What an evaluator keeps of a character: its nodes and its shapes' names, without surfaces.
 Character outline(const Character& character);
