@@ -32,7 +32,8 @@ namespace {
 
 TEST(NoAllocation, EvaluatorAndPointEvaluatorKeepTheirMemory) {
   for (unsigned seed = 0; seed < 6; ++seed) {
-    const Character character = test::wired_rig(seed);
+    Character character = test::wired_rig(seed);
+    if (seed > 3) character.constraints = test::constrained_rig(seed).constraints;
     std::vector<Pose> poses;
     for (unsigned f = 0; f < 10; ++f) poses.push_back(test::wired_pose(character, 10 * seed + f));
     Evaluator evaluator(character);

@@ -170,4 +170,27 @@ inline Pose wired_pose(const Character& character, unsigned seed) {
   return pose;
 }
 
+/// The random rig with a constraint of every kind; each node looks at nodes before it.
+inline Character constrained_rig(unsigned seed) {
+  Character character = random_rig(seed);
+  const auto add = [&](Constraint::Kind kind, int node, std::vector<ConstraintSource> sources) {
+    Constraint constraint;
+    constraint.name = "constraint" + std::to_string(character.constraints.size());
+    constraint.kind = kind;
+    constraint.node = node;
+    constraint.sources = std::move(sources);
+    character.constraints.push_back(constraint);
+    return &character.constraints.back();
+  };
+  add(Constraint::Kind::scale, 1, {{0, 1}});
+  Constraint* limit = add(Constraint::Kind::limit, 2, {});
+  limit->rotation[0] = {-0.3, 0.3};
+  limit->translation[1] = {-0.05, 0.05};
+  add(Constraint::Kind::point, 3, {{1, 1}})->influence = 0.6;
+  add(Constraint::Kind::orient, 4, {{2, 1}, {3, 2}})->relative = seed % 3 > 0;
+  add(Constraint::Kind::parent, 5, {{1, 1}, {3, 0.5}})->influence = 0.8;
+  add(Constraint::Kind::aim, 6, {{2, 1}});
+  return character;
+}
+
 }  // namespace mien::test

@@ -53,6 +53,7 @@ TwistTable::TwistTable(const Blocks& blocks) {
 CompiledCharacter::CompiledCharacter(const Character& character,
                                      const std::vector<std::vector<int>>& vertices, bool is_compact)
     : outline(detail::outline(character)),
+      constraints(character),
       wire_rows(character),
       blocks(compile_blocks(character, vertices, is_compact, wire_rows, chain)),
       twists(blocks) {}
@@ -82,7 +83,7 @@ void Frame::set(const CompiledCharacter& compiled, const Pose& pose) {
   check_pose(compiled.outline, pose);
   set_wires(compiled.wire_rows, pose);
   set_coefficients(compiled.blocks, pose);
-  set_matrices(compiled.chain, compiled.outline.nodes, pose);
+  set_matrices(compiled, pose);
   if (!compiled.twists.empty()) set_rigid(compiled.twists);
 }
 
@@ -122,8 +123,10 @@ void Frame::set_table(std::size_t table, const Blocks& blocks) {
   is_dense_[table] = static_cast<double>(count) >= dense_share * static_cast<double>(shapes_);
 }
 
-void Frame::set_matrices(const JointChain& chain, const std::vector<Node>& nodes, const Pose& pose) {
-  chain.evaluate(nodes, pose, model_, carried_);
+void Frame::set_matrices(const CompiledCharacter& compiled, const Pose& pose) {
+  locals_ = pose.locals;
+  compiled.constraints.apply(locals_);
+  compiled.chain.evaluate(compiled.outline.nodes, locals_, model_, carried_);
   for (std::size_t c = 0; c < carried_.size(); ++c)
     for (int i = 0; i < 3; ++i) {
       float* row = matrices_.data() + 12 * c + 4 * static_cast<std::size_t>(i);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "mien/character/pose.h"
+#include "mien/evaluate/constraints.h"
 #include "mien/evaluate/detail/compile_blocks.h"
 #include "mien/evaluate/detail/wire_motion.h"
 
@@ -29,6 +30,7 @@ struct CompiledCharacter {
   CompiledCharacter(const Character& character, const std::vector<std::vector<int>>& vertices,
                     bool is_compact);
   Character outline;
+  ConstraintSolver constraints;
   WireRows wire_rows;
   JointChain chain;
   Blocks blocks;
@@ -63,7 +65,7 @@ class Frame {
  private:
   void set_coefficients(const Blocks& blocks, const Pose& pose);
   void set_table(std::size_t table, const Blocks& blocks);
-  void set_matrices(const JointChain& chain, const std::vector<Node>& nodes, const Pose& pose);
+  void set_matrices(const CompiledCharacter& compiled, const Pose& pose);
   void set_rigid(const TwistTable& twists);
   void set_rigid_of(std::size_t carrier);
   void set_wires(const WireRows& layout, const Pose& pose);
@@ -74,6 +76,7 @@ class Frame {
   std::vector<float> coefficients_;         // shapes a table
   std::vector<std::uint64_t> active_;       // words a table
   std::vector<char> is_dense_;              // by table: nearly all shapes are active
+  std::vector<Transform> locals_;           // that obey the constraints
   std::vector<Affine> model_, carried_;
   std::vector<float> matrices_, rigid_, stretches_;
   bool has_stretch_ = false, has_twist_ = false;

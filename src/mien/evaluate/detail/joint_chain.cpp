@@ -74,13 +74,13 @@ int JointChain::link_of(int node) const {
   return static_cast<std::size_t>(node) < link_of_node_.size() ? link_of_node_[node] : -1;
 }
 
-void JointChain::evaluate(const std::vector<Node>& nodes, const Pose& pose, std::vector<Affine>& model,
-                          std::vector<Affine>& carried) const {
+void JointChain::evaluate(const std::vector<Node>& nodes, const std::vector<Transform>& locals,
+                          std::vector<Affine>& model, std::vector<Affine>& carried) const {
   model.resize(links_.size());
   carried.resize(carriers_.size());
   for (std::size_t l = 0; l < links_.size(); ++l) {
     const auto [node, parent] = links_[l];
-    const Affine local = local_affine(nodes[node], pose.locals[node]);
+    const Affine local = local_affine(nodes[node], locals[node]);
     model[l] = parent < 0 ? local : model[parent] * local;
   }
   for (std::size_t c = 0; c < carriers_.size(); ++c)

@@ -52,9 +52,9 @@ class JointChain {
   int link_of(int node) const;
 
   /// Node to model space for every link, and bind pose (or part's space) to model space for every carrier.
-  /// Both are resized; `pose` has been checked.
-  void evaluate(const std::vector<Node>& nodes, const Pose& pose, std::vector<Affine>& model,
-                std::vector<Affine>& carried) const;
+  /// Both are resized; `locals` have been checked.
+  void evaluate(const std::vector<Node>& nodes, const std::vector<Transform>& locals,
+                std::vector<Affine>& model, std::vector<Affine>& carried) const;
 
  private:
   int add_link(const Character& character, int node);
