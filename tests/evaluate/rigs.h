@@ -8,6 +8,7 @@
 #include "mien/character/character.h"
 #include "mien/character/pose.h"
 #include "mien/character/sliders.h"
+#include "mien/geometry/bspline.h"
 
 namespace mien::test {
 
@@ -116,6 +117,80 @@ inline Pose random_pose(const Character& character, unsigned seed) {
     local.scale += random.vector(0.1);
   }
   return pose;
+}
+
+/// A wire without bindings.
+inline Wire random_wire(Random& random, int index, int controls) {
+  Wire wire;
+  wire.name = "wire" + std::to_string(index);
+  wire.curve.controls.resize(controls, 3);
+  for (int c = 0; c < controls; ++c) wire.curve.controls.row(c) = random.vector(1);
+  wire.curve.knots = clamped_knots(controls);
+  wire.ranges = {0.5};
+  return wire;
+}
+
+/// The random rig with three wires over all of its parts; the second does not turn.
+inline Character wired_rig(unsigned seed) {
+  Character character = random_rig(seed);
+  Random random(seed + 5000);
+  for (int w = 0; w < 3; ++w) {
+    Wire wire = random_wire(random, w, 4 + w);
+    if (w == 1) wire.turn_controls = 0;
+    for (int p = 0; p < static_cast<int>(character.parts.size()); ++p) {
+      WireBinding binding{p, {}, {}, {}};
+      for (int v = 0; v < static_cast<int>(character.parts[p].mesh.vertex_count()); ++v)
+        if (random.index(5) < 2) {
+          binding.vertices.push_back(v);
+          binding.falloff.push_back(static_cast<float>(random.number(0.1, 1)));
+          binding.parameters.push_back(static_cast<float>(random.number(0, 1)));
+        }
+      wire.bindings.push_back(binding);
+    }
+    character.wires.push_back(wire);
+  }
+  return character;
+}
+
+inline PointsD random_rows(Random& random, int rows, double size) {
+  PointsD moves(rows, 3);
+  for (int r = 0; r < rows; ++r) moves.row(r) = random.vector(size);
+  return moves;
+}
+
+/// A random pose in which two wires move, one of them twice.
+inline Pose wired_pose(const Character& character, unsigned seed) {
+  Pose pose = random_pose(character, seed);
+  Random random(seed + 7000);
+  for (const int w : {0, 2, 0}) {
+    const Wire& wire = character.wires[w];
+    pose.wires.push_back({w, random_rows(random, wire.curve.control_count(), 0.3), random.number(-0.5, 0.5),
+                          random_rows(random, wire.turn_controls, 0.4)});
+  }
+  return pose;
+}
+
+/// The random rig with a constraint of every kind; each node looks at nodes before it.
+inline Character constrained_rig(unsigned seed) {
+  Character character = random_rig(seed);
+  const auto add = [&](Constraint::Kind kind, int node, std::vector<ConstraintSource> sources) {
+    Constraint constraint;
+    constraint.name = "constraint" + std::to_string(character.constraints.size());
+    constraint.kind = kind;
+    constraint.node = node;
+    constraint.sources = std::move(sources);
+    character.constraints.push_back(constraint);
+    return &character.constraints.back();
+  };
+  add(Constraint::Kind::scale, 1, {{0, 1}});
+  Constraint* limit = add(Constraint::Kind::limit, 2, {});
+  limit->rotation[0] = {-0.3, 0.3};
+  limit->translation[1] = {-0.05, 0.05};
+  add(Constraint::Kind::point, 3, {{1, 1}})->influence = 0.6;
+  add(Constraint::Kind::orient, 4, {{2, 1}, {3, 2}})->relative = seed % 3 > 0;
+  add(Constraint::Kind::parent, 5, {{1, 1}, {3, 0.5}})->influence = 0.8;
+  add(Constraint::Kind::aim, 6, {{2, 1}});
+  return character;
 }
 
 }  // namespace mien::test

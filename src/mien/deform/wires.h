@@ -40,8 +40,13 @@ class WireField {
   ///   cost    about 8 ns an entry, 0.5 ms for 22 wires on a face of 9,000 vertices
   void add(int part, std::span<const WireMove> moves, PointsD& positions) const;
 
+  ///   throws  as add, for the moves
+  void check(std::span<const WireMove> moves) const;
+
   int wire_count() const { return static_cast<int>(sizes_.size()); }
   const std::vector<PartRows>& parts() const { return parts_; }
+  /// Model space vectors to the part's own space.
+  const Eigen::Matrix3d& to_part(int part) const { return to_part_[part]; }
 
  private:
   struct Size {
@@ -50,7 +55,6 @@ class WireField {
   struct Hold;
   void share_part(const Character& character, std::span<const Wire> wires, int part,
                   const std::vector<Hold>& holds);
-  void check(std::span<const WireMove> moves) const;
 
   std::vector<Size> sizes_;
   std::vector<std::string> names_;

@@ -25,11 +25,8 @@ using detail::Frame;
 using detail::lane_count;
 using detail::PartBlocks;
 
-struct Evaluator::Compiled {
-  Character outline;
-  detail::JointChain chain;
-  detail::Blocks blocks;
-  detail::TwistTable twists;
+struct Evaluator::Compiled : detail::CompiledCharacter {
+  using CompiledCharacter::CompiledCharacter;
   InstructionSet instructions = InstructionSet::plain;
   const detail::Kernel* kernel = nullptr;
 };
@@ -47,15 +44,18 @@ std::size_t most_joints(const detail::Blocks& blocks) {
 
 struct Evaluator::State {
   explicit State(const Compiled& compiled)
-      : now(compiled.outline, compiled.chain, compiled.blocks), before(now), moved(now.carrier_count()) {
+      : now(compiled),
+        before(now),
+        moved(now.carrier_count()),
+        moved_wires(static_cast<std::size_t>(compiled.wire_rows.wire_count())) {
     turned_weights.reserve(lane_count * most_joints(compiled.blocks));
     changed.reserve(compiled.blocks.words);
   }
   Frame now, before;
   bool has_before = false;
-  std::vector<float> turned_weights;   // of one block
-  std::vector<std::uint64_t> changed;  // bits of the shapes that changed on one part
-  std::vector<char> moved;             // by carrier
+  std::vector<float> turned_weights;     // of one block
+  std::vector<std::uint64_t> changed;    // bits of the shapes that changed on one part
+  std::vector<char> moved, moved_wires;  // by carrier, by wire
 };
 
 namespace {
@@ -80,6 +80,7 @@ BlockRun run_of(const detail::Blocks& blocks, std::size_t part) {
   run.begin = blocks.parts[part].begin;
   run.end = blocks.parts[part].end;
   run.skin = blocks.parts[part].skin;
+  run.to_part = blocks.wires.is_in_model_space[part] ? nullptr : blocks.wires.to_part[part].data();
   run.row = blocks.row.data();
   run.in_a_row = blocks.in_a_row.data();
   return run;
@@ -123,11 +124,8 @@ Evaluator::Evaluator(const Character& character, const EvaluatorOptions& options
   if (!is_supported(options.instructions))
     throw invalid_input("instruction set",
                         std::string(name_of(options.instructions)) + " does not run on this machine", "best");
-  auto compiled = std::make_shared<Compiled>();
-  compiled->outline = detail::outline(character);
-  compiled->blocks = detail::compile_blocks(character, options.vertices,
-                                            options.precision == DeltaPrecision::compact, compiled->chain);
-  compiled->twists = detail::TwistTable(compiled->blocks);
+  auto compiled =
+      std::make_shared<Compiled>(character, options.vertices, options.precision == DeltaPrecision::compact);
   compiled->instructions =
       options.instructions == InstructionSet::best ? best_supported() : options.instructions;
   compiled->kernel = kernel_of(compiled->instructions);
@@ -221,6 +219,8 @@ class Evaluator::PartRun {
       if (blocks_.shape_bits[blocks_.words * b + w] & state_.changed[w]) return true;
     for (std::size_t e = blocks_.joint_begin[b]; e < blocks_.joint_begin[b + 1]; ++e)
       if (state_.moved[blocks_.joints[e]]) return true;
+    for (std::size_t e = blocks_.wires.begin[b]; e < blocks_.wires.begin[b + 1]; ++e)
+      if (state_.moved_wires[blocks_.wires.entries[e].wire]) return true;
     return false;
   }
 
@@ -247,9 +247,9 @@ class Evaluator::PartRun {
 
   std::size_t run_twisted(std::size_t b) {
     state_.now.turn_weights(blocks_, b, state_.turned_weights);
-    frame_.joint_weights = state_.turned_weights.data();
+    frame_.turned_weights = state_.turned_weights.data();
     const std::size_t count = run(b, b + 1);
-    frame_.joint_weights = nullptr;
+    frame_.turned_weights = nullptr;
     return count;
   }
 
@@ -269,10 +269,13 @@ std::size_t Evaluator::run(const Pose& pose, float* blocks, float* rows, bool on
   const bool can_keep = only_changes && state.has_before;
   if (can_keep) std::swap(state.now, state.before);
   state.has_before = false;  // should the pose be refused
-  state.now.set(compiled.outline, compiled.chain, compiled.blocks, compiled.twists, pose);
-  if (can_keep)
+  state.now.set(compiled, pose);
+  if (can_keep) {
     for (std::size_t c = 0; c < state.moved.size(); ++c)
       state.moved[c] = state.now.has_moved(state.before, c);
+    for (std::size_t w = 0; w < state.moved_wires.size(); ++w)
+      state.moved_wires[w] = state.now.has_wire_moved(state.before, compiled.wire_rows, w);
+  }
   std::size_t count = 0;
   for (std::size_t p = 0; p < compiled.blocks.parts.size(); ++p) {
     PartRun part(compiled, state, p, blocks, rows);
@@ -357,9 +360,7 @@ void Evaluator::bake_groups(std::span<const Pose> poses, float* frames, bool as_
          first += bake_width) {
       const std::size_t count = std::min(bake_width, poses.size() - first);
       for (std::size_t f = 0; f < bake_width; ++f) {
-        if (f < count)
-          group.frames[f].set(compiled.outline, compiled.chain, compiled.blocks, compiled.twists,
-                              poses[first + f]);
+        if (f < count) group.frames[f].set(compiled, poses[first + f]);
         group.place(f, f < count, frames + (first + f) * size);
       }
       for (std::size_t p = 0; p < compiled.blocks.parts.size(); ++p) {
@@ -405,9 +406,12 @@ double Evaluator::compact_error(const ShapeWeights& weights) const {
 
 std::size_t Evaluator::bytes() const {
   const detail::Blocks& b = compiled_->blocks;
-  return 4 * (b.neutral.size() + b.deltas.size() + b.joint_weights.size() + b.shape_begin.size() +
-              b.joint_begin.size()) +
-         2 * (b.compact.size() + b.shapes.size() + b.joints.size()) + 8 * b.shape_bits.size();
+  const std::size_t floats = b.neutral.size() + b.deltas.size() + b.joint_weights.size() +
+                             b.wires.weights.size() + b.wires.arms.size();
+  const std::size_t indices =
+      b.shape_begin.size() + b.joint_begin.size() + b.wires.begin.size() + b.wires.rows.size();
+  return 4 * (floats + indices) + 2 * (b.compact.size() + b.shapes.size() + b.joints.size()) +
+         8 * b.shape_bits.size() + sizeof(detail::WireEntry) * b.wires.entries.size();
 }
 
 }  // namespace mien

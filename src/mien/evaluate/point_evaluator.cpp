@@ -3,7 +3,9 @@
 // does, the site is at y = sum_c w_c M_c x. For node n, M_c = U exp([w]x) B_c with U = (parent's model matrix) T R, and
 // B_c = (scale of n) (locals between n and the joint) (inverse bind): then dy/dw = -U [sum_c w_c B_c x]x. B_c is walked
 // down from n, not up from the joint by inverses: a scale of zero somewhere does no harm. A site of a dual quaternion
-// skin is at y = rigid(sum_c w_c q_c) sum_c w_c S_c x; the slopes of q_c and S_c come from those of M_c.
+// skin is at y = rigid(sum_c w_c q_c) sum_c w_c S_c x; the slopes of q_c and S_c come from those of M_c. Constraints stand between
+// a node and M_c, with limits, averages of rotations and whatever else: there the slopes of the M_c alone, a few matrices, are
+// central differences, and everything after them is as before.
 #include "mien/evaluate/point_evaluator.h"
 
 #include <algorithm>
@@ -14,9 +16,11 @@
 #include "mien/character/sliders.h"
 #include "mien/core/error.h"
 #include "mien/deform/dual_quaternion.h"
+#include "mien/evaluate/constraints.h"
 #include "mien/evaluate/detail/check_pose.h"
 #include "mien/evaluate/detail/joint_chain.h"
 #include "mien/evaluate/detail/point_sites.h"
+#include "mien/evaluate/detail/wire_motion.h"
 
 namespace mien {
 
@@ -25,6 +29,12 @@ using detail::Site;
 using detail::Term;
 
 namespace {
+
+using Motion = Eigen::Matrix<double, 3, 4>;
+
+/// Of a turn in radians, and of a shift as a share of the points' coordinates: an error of 1e-10 either way, by its square and
+/// by the digits that are left.
+constexpr double difference_step = 1e-5;
 
 /// The blend of a dual quaternion site's influences.
 struct RigidBlend {
@@ -48,13 +58,21 @@ Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& v) {
 
 struct PointEvaluator::Impl : detail::PointSites {
   Impl(const Character& character, const std::vector<SurfacePoint>& points)
-      : PointSites(character, points), outline(detail::outline(character)) {}
+      : PointSites(character, points),
+        outline(detail::outline(character)),
+        constraints(character),
+        wire_rows(character),
+        wires(wire_rows) {}
 
   Character outline;
+  ConstraintSolver constraints;
+  detail::WireRows wire_rows;
 
   // Of the last pose.
-  Eigen::MatrixXd weights;               // #S x parts
+  Eigen::MatrixXd weights;  // #S x parts
+  detail::WireMotion wires;
   Eigen::MatrixXi is_exception;          // #S x parts: the shape weight is the part's own
+  std::vector<Transform> locals;         // that obey the constraints
   std::vector<Affine> model, carried;    // by link, by carrier
   std::vector<StretchedMotion> motions;  // by carrier, when a site is of a dual quaternion skin
   std::vector<DualQuaternion> rigid;
@@ -63,7 +81,9 @@ struct PointEvaluator::Impl : detail::PointSites {
   // Of one joint freedom.
   std::vector<char> is_below;  // by link
   std::vector<Affine> below;
-  std::vector<std::array<MotionSlope, 6>> slopes;          // by carrier: turns, then shifts
+  std::vector<std::array<MotionSlope, 6>> slopes;     // by carrier: turns, then shifts
+  std::vector<std::array<Motion, 6>> carrier_slopes;  // the same as matrices, when there are constraints
+  std::vector<Affine> model_there, high, low;
   std::vector<std::vector<ShapeColumn>> columns_of_shape;  // #S: the columns that a shape weight moves
 
   void pose_sites(const Pose& pose);
@@ -80,6 +100,9 @@ struct PointEvaluator::Impl : detail::PointSites {
                          Eigen::MatrixXd& out);
   Eigen::Matrix<double, 3, 6> linear_slope(std::size_t site, const Eigen::Matrix3d& turn,
                                            const Eigen::Matrix3d& shift) const;
+  void carry_there(const Pose& pose, int node, int column, double step, std::vector<Affine>& there);
+  void set_carrier_slopes(const JointFreedom& freedom, const Pose& pose);
+  Eigen::Matrix<double, 3, 6> linear_slope_of_carriers(std::size_t site) const;
   void set_motion_slopes(const Eigen::Matrix3d& turn, const Eigen::Matrix3d& shift);
   Eigen::Matrix<double, 3, 6> dual_quaternion_slope(std::size_t site) const;
   void check(const Freedoms& freedoms) const;
@@ -100,13 +123,18 @@ void PointEvaluator::Impl::set_weights(const Pose& pose) {
 void PointEvaluator::Impl::pose_sites(const Pose& pose) {
   detail::check_pose(outline, pose);
   set_weights(pose);
-  chain.evaluate(outline.nodes, pose, model, carried);
+  wires.set(wire_rows, pose.wires);
+  locals = pose.locals;
+  constraints.apply(locals);
+  chain.evaluate(outline.nodes, locals, model, carried);
   if (!motions.empty()) split_motions();
   for (std::size_t i = 0; i < sites.size(); ++i) {
     const Site& site = sites[i];
     Eigen::Vector3d x = site.neutral;
     for (int d = site.delta_begin; d < site.delta_end; ++d)
       x += weights(deltas[d].shape, site.column) * deltas[d].move;
+    for (int w = site.wire_begin; w < site.wire_end && !wires.is_still; ++w)
+      x += to_part[site.column] * wires.of(wire_rows, wire_entries[w]);
     const auto row = static_cast<Eigen::Index>(i);
     shaped.row(row) = x;
     placed.row(row) = place(site, x);
@@ -191,28 +219,76 @@ void PointEvaluator::Impl::walk_below(int link, const Pose& pose) {
     const auto [node, parent] = links[l];
     if (parent < 0 || !is_below[parent]) continue;
     is_below[l] = 1;
-    below[l] = below[parent] * detail::affine(local_matrix(outline.nodes[node], pose.locals[node]));
+    below[l] = below[parent] * detail::local_affine(outline.nodes[node], pose.locals[node]);
   }
 }
 
 void PointEvaluator::Impl::add_joint_columns(const JointFreedom& freedom, const Pose& pose,
                                              Eigen::Index column, Eigen::MatrixXd& out) {
   const int link = chain.link_of(freedom.node);
-  if (link < 0) return;  // it moves none of the points
-  walk_below(link, pose);
-  const int parent = chain.links()[link].parent;
-  const Eigen::Matrix3d shift = parent < 0 ? Eigen::Matrix3d::Identity() : model[parent].linear;
-  const Eigen::Matrix3d turn = shift * pose.locals[freedom.node].rotation.toRotationMatrix();
-  if (!motions.empty()) set_motion_slopes(turn, shift);
+  const bool is_free = constraints.empty();
+  if (link < 0 && is_free) return;  // it moves none of the points
+  Eigen::Matrix3d turn, shift;
+  if (is_free) {
+    walk_below(link, pose);
+    const int parent = chain.links()[link].parent;
+    shift = parent < 0 ? Eigen::Matrix3d::Identity() : model[parent].linear;
+    turn = shift * pose.locals[freedom.node].rotation.toRotationMatrix();
+    if (!motions.empty()) set_motion_slopes(turn, shift);
+  } else {
+    set_carrier_slopes(freedom, pose);
+  }
   for (const Term& term : terms) {
     const auto site = static_cast<std::size_t>(term.site);
     const Eigen::Matrix<double, 3, 6> slope =
-        term.weight *
-        (sites[site].is_dual_quaternion ? dual_quaternion_slope(site) : linear_slope(site, turn, shift));
+        term.weight * (sites[site].is_dual_quaternion ? dual_quaternion_slope(site)
+                       : is_free                      ? linear_slope(site, turn, shift)
+                                                      : linear_slope_of_carriers(site));
     auto rows = out.middleRows<3>(3 * term.point);
     if (freedom.rotation) rows.middleCols<3>(column) += slope.leftCols<3>();
     if (freedom.translation) rows.middleCols<3>(column + 3 * freedom.rotation) += slope.rightCols<3>();
   }
+}
+
+/// What the carriers do when one of a node's six freedoms is moved by `step` before the constraints are obeyed.
+void PointEvaluator::Impl::carry_there(const Pose& pose, int node, int column, double step,
+                                       std::vector<Affine>& there) {
+  locals = pose.locals;
+  if (column < 3)
+    locals[node].rotation =
+        locals[node].rotation *
+        Eigen::Quaterniond(Eigen::AngleAxisd(step, Eigen::Vector3d(Eigen::Vector3d::Unit(column))));
+  else
+    locals[node].translation[column - 3] += step;
+  constraints.apply(locals);
+  chain.evaluate(outline.nodes, locals, model_there, there);
+}
+
+void PointEvaluator::Impl::set_carrier_slopes(const JointFreedom& freedom, const Pose& pose) {
+  std::fill(is_below.begin(), is_below.end(), 1);  // any carrier may follow
+  double size = std::max(shaped.cwiseAbs().maxCoeff(), placed.cwiseAbs().maxCoeff());
+  if (size == 0) size = 1;
+  for (int column = 0; column < 6; ++column) {
+    if (!(column < 3 ? freedom.rotation : freedom.translation)) continue;
+    const double step = column < 3 ? difference_step : difference_step * size;
+    carry_there(pose, freedom.node, column, step, high);
+    carry_there(pose, freedom.node, column, -step, low);
+    for (std::size_t c = 0; c < carried.size(); ++c) {
+      carrier_slopes[c][column] << high[c].linear - low[c].linear, high[c].origin - low[c].origin;
+      carrier_slopes[c][column] /= 2 * step;
+      if (!motions.empty()) slopes[c][column] = motion_slope(motions[c], carrier_slopes[c][column]);
+    }
+  }
+}
+
+Eigen::Matrix<double, 3, 6> PointEvaluator::Impl::linear_slope_of_carriers(std::size_t index) const {
+  const Site& site = sites[index];
+  const Eigen::Vector4d x = shaped.row(static_cast<Eigen::Index>(index)).transpose().homogeneous();
+  Eigen::Matrix<double, 3, 6> slope = Eigen::Matrix<double, 3, 6>::Zero();
+  for (int k = site.influence_begin; k < site.influence_end; ++k)
+    for (int column = 0; column < 6; ++column)
+      slope.col(column) += influences[k].weight * (carrier_slopes[influences[k].carrier][column] * x);
+  return slope;
 }
 
 Eigen::Matrix<double, 3, 6> PointEvaluator::Impl::linear_slope(std::size_t index, const Eigen::Matrix3d& turn,
@@ -310,6 +386,10 @@ PointEvaluator::PointEvaluator(const Character& character, const std::vector<Sur
     impl_->rigid.resize(impl_->chain.carriers().size());
     impl_->slopes.resize(impl_->chain.carriers().size());
   }
+  if (!impl_->constraints.empty())
+    impl_->carrier_slopes.assign(
+        impl_->chain.carriers().size(),
+        {Motion::Zero(), Motion::Zero(), Motion::Zero(), Motion::Zero(), Motion::Zero(), Motion::Zero()});
 }
 
 PointEvaluator::~PointEvaluator() = default;

@@ -126,8 +126,10 @@ PartLists part_lists(const Character& character, std::size_t p, std::vector<int>
 }
 
 /// Order of the part's chosen vertices in the blocks.
-std::vector<int> block_order(const PartLists& lists, std::size_t shape_count, std::size_t carrier_count) {
-  const std::size_t bits = shape_count + carrier_count + 1;
+std::vector<int> block_order(const PartLists& lists, const WirePacker& wires, std::size_t part,
+                             std::size_t shape_count, std::size_t carrier_count) {
+  const std::size_t first_row = shape_count + carrier_count + 1;
+  const std::size_t bits = first_row + static_cast<std::size_t>(wires.layout().row_count());
   BitSets sets(lists.vertices.size(), bits);
   for (std::size_t i = 0; i < lists.vertices.size(); ++i) {
     for (int e = lists.shapes.begin[i]; e < lists.shapes.begin[i + 1]; ++e)
@@ -135,6 +137,10 @@ std::vector<int> block_order(const PartLists& lists, std::size_t shape_count, st
     for (int e = lists.joints.begin[i]; e < lists.joints.begin[i + 1]; ++e)
       sets.set(
           i, shape_count + std::min(static_cast<std::size_t>(lists.joints.entries[e].index), carrier_count));
+    for (const WireField::Entry& entry : wires.entries_of(part, lists.vertices[i]))
+      for (int a = 0; a < 4; ++a)
+        sets.set(i, first_row +
+                        static_cast<std::size_t>(wires.layout().control_begin(entry.wire) + entry.first + a));
   }
   return gray_order(sets, bits, lane_count);
 }
@@ -142,7 +148,8 @@ std::vector<int> block_order(const PartLists& lists, std::size_t shape_count, st
 /// Writes the blocks of one part after the other.
 class Packer {
  public:
-  Packer(const Character& character, Blocks& blocks) : character_(character), blocks_(blocks) {
+  Packer(const Character& character, WirePacker& wires, Blocks& blocks)
+      : character_(character), wires_(wires), blocks_(blocks) {
     blocks_.words = (character.shapes.size() + 63) / 64;
   }
 
@@ -155,6 +162,8 @@ class Packer {
       add_neutral(character_.parts[part].mesh, lists, lanes);
       add_shapes(lists.shapes, lanes);
       add_joints(lists, lanes);
+      for (int& lane : lanes) lane = lists.vertices[lane];
+      wires_.add_block(part, lanes);
     }
     blocks_.parts.push_back({begin, blocks_.count(), lists.skin});
     blocks_.vertex_count += rows;
@@ -188,6 +197,11 @@ class Packer {
     return all;
   }
 
+  static std::size_t rank_of(int index, const std::vector<int>& ascending) {
+    return static_cast<std::size_t>(std::lower_bound(ascending.begin(), ascending.end(), index) -
+                                    ascending.begin());
+  }
+
   void add_shapes(const Lists& lists, const LaneVertices& lanes) {
     const std::vector<int> all = united(lists, lanes);
     const std::size_t first_word = blocks_.shape_bits.size(), base = blocks_.shapes.size();
@@ -203,8 +217,7 @@ class Packer {
     for (std::size_t l = 0; l < lane_count; ++l)
       for (int e = lists.begin[lanes[l]]; e < lists.begin[lanes[l] + 1]; ++e) {
         const Entry& entry = lists.entries[e];
-        const auto rank = std::lower_bound(all.begin(), all.end(), entry.index) - all.begin();
-        put_delta(block_floats * (base + static_cast<std::size_t>(rank)) + l, entry);
+        put_delta(block_floats * (base + rank_of(entry.index, all)) + l, entry);
       }
   }
 
@@ -220,18 +233,18 @@ class Packer {
   }
 
   void add_joints(const PartLists& lists, const LaneVertices& lanes) {
-    const std::vector<int> all =
-        lists.skin == BlockSkin::none ? std::vector<int>{} : united(lists.joints, lanes);
-    const std::size_t base = lane_count * blocks_.joints.size();
+    std::vector<int> all = lists.skin == BlockSkin::none ? std::vector<int>{} : united(lists.joints, lanes);
+    if (all.empty()) all.push_back(identity);
+    const std::size_t base = blocks_.joint_weights.size();
     for (const int joint : all) blocks_.joints.push_back(static_cast<std::uint16_t>(joint));
     blocks_.joint_begin.push_back(static_cast<std::uint32_t>(blocks_.joints.size()));
-    blocks_.joint_weights.resize(lane_count * blocks_.joints.size(), 0.f);
+    blocks_.joint_weights.resize(base + lane_count * (all.size() - 1), 0.f);
     for (std::size_t l = 0; l < lane_count; ++l) {
       const Entry* strongest = nullptr;
       for (int e = lists.joints.begin[lanes[l]]; e < lists.joints.begin[lanes[l] + 1]; ++e) {
         const Entry& entry = lists.joints.entries[e];
-        const auto rank = std::lower_bound(all.begin(), all.end(), entry.index) - all.begin();
-        blocks_.joint_weights[base + lane_count * static_cast<std::size_t>(rank) + l] += entry.value.x();
+        if (const std::size_t rank = rank_of(entry.index, all); rank > 0)
+          blocks_.joint_weights[base + lane_count * (rank - 1) + l] += entry.value.x();
         if (!strongest || entry.value.x() > strongest->value.x()) strongest = &entry;
       }
       blocks_.pivots.push_back(static_cast<std::uint16_t>(strongest ? strongest->index : identity));
@@ -239,6 +252,7 @@ class Packer {
   }
 
   const Character& character_;
+  WirePacker& wires_;
   Blocks& blocks_;
 };
 
@@ -262,11 +276,12 @@ BlockData Blocks::view() const {
   data.joint_begin = joint_begin.data();
   data.joints = joints.data();
   data.joint_weights = joint_weights.data();
+  data.wires = wires.view();
   return data;
 }
 
 Blocks compile_blocks(const Character& character, const std::vector<std::vector<int>>& vertices,
-                      bool is_compact, JointChain& chain) {
+                      bool is_compact, const WireRows& wire_rows, JointChain& chain) {
   if (!vertices.empty() && vertices.size() != character.parts.size())
     throw invalid_input("vertices", "are of " + std::to_string(vertices.size()) + " parts",
                         std::to_string(character.parts.size()) + " lists, one a part");
@@ -275,13 +290,15 @@ Blocks compile_blocks(const Character& character, const std::vector<std::vector<
   blocks.first_row = {0};
   if (is_compact) blocks.scales = largest_deltas(character);
   for (float& scale : blocks.scales) scale /= 32767;
-  Packer packer(character, blocks);
+  WirePacker wires(character, wire_rows);
+  Packer packer(character, wires, blocks);
   for (std::size_t p = 0; p < character.parts.size(); ++p) {
     const PartLists lists =
         part_lists(character, p, chosen_vertices(character, p, vertices), blocks.scales, chain);
     check_limits(0, chain.carriers().size());
-    packer.add_part(p, lists, block_order(lists, character.shapes.size(), chain.carriers().size()));
+    packer.add_part(p, lists, block_order(lists, wires, p, character.shapes.size(), chain.carriers().size()));
   }
+  blocks.wires = wires.take();
   const auto past = static_cast<std::uint16_t>(chain.carriers().size());
   for (auto* list : {&blocks.joints, &blocks.pivots})
     std::replace(list->begin(), list->end(), static_cast<std::uint16_t>(identity), past);

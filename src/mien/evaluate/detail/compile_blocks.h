@@ -1,31 +1,16 @@
 #pragma once
 /// A character's vertices, shapes and skin weights packed into the blocks that the kernels run through.
 
-#include <array>
 #include <cstdint>
-#include <new>
 #include <vector>
 
 #include "mien/character/character.h"
+#include "mien/evaluate/detail/compile_wires.h"
 #include "mien/evaluate/detail/joint_chain.h"
 #include "mien/evaluate/detail/kernel.h"
+#include "mien/evaluate/detail/lines.h"
 
 namespace mien::detail {
-
-/// Memory on cache lines.
-template <class T>
-struct LineAllocator {
-  using value_type = T;
-  static constexpr std::align_val_t line{64};
-  LineAllocator() = default;
-  template <class U>
-  LineAllocator(const LineAllocator<U>&) {}
-  T* allocate(std::size_t count) { return static_cast<T*>(::operator new(count * sizeof(T), line)); }
-  void deallocate(T* memory, std::size_t) { ::operator delete(memory, line); }
-  bool operator==(const LineAllocator&) const { return true; }
-};
-template <class T>
-using Lines = std::vector<T, LineAllocator<T>>;
 
 /// The blocks of one part.
 struct PartBlocks {
@@ -47,10 +32,11 @@ struct Blocks {
   std::size_t words = 0;  // of shape_bits a block
   std::vector<std::uint32_t> joint_begin{0};
   std::vector<std::uint16_t> joints;
-  Lines<float> joint_weights;
+  Lines<float> joint_weights;  // 16 a joint entry but a block's first
   std::vector<std::uint16_t>
-      pivots;                     // 16 a block of a dual quaternion skin: the carrier of the largest weight
-  std::vector<std::int32_t> row;  // 16 a block
+      pivots;  // 16 a block of a dual quaternion skin: the carrier of the largest weight
+  WireBlocks wires;
+  std::vector<std::int32_t> row;           // 16 a block
   std::vector<std::uint32_t> lane_of_row;  // 16 block + lane
   std::vector<std::uint8_t> in_a_row;
   std::size_t count() const { return in_a_row.size(); }
@@ -60,6 +46,6 @@ struct Blocks {
 /// `vertices` as EvaluatorOptions has them. `chain` receives the carriers; one past its last means the identity.
 ///   throws  invalid_input: vertices that do not exist or come twice, more shapes or carriers than 65,535
 Blocks compile_blocks(const Character& character, const std::vector<std::vector<int>>& vertices,
-                      bool is_compact, JointChain& chain);
+                      bool is_compact, const WireRows& wire_rows, JointChain& chain);
 
 }  // namespace mien::detail

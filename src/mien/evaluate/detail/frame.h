@@ -6,7 +6,9 @@
 #include <vector>
 
 #include "mien/character/pose.h"
+#include "mien/evaluate/constraints.h"
 #include "mien/evaluate/detail/compile_blocks.h"
+#include "mien/evaluate/detail/wire_motion.h"
 
 namespace mien::detail {
 
@@ -22,13 +24,25 @@ class TwistTable {
   std::vector<std::pair<std::uint16_t, std::uint16_t>> pairs_;
 };
 
+/// What an evaluator compiles of a character.
+struct CompiledCharacter {
+  ///   throws  invalid_input: as compile_blocks
+  CompiledCharacter(const Character& character, const std::vector<std::vector<int>>& vertices,
+                    bool is_compact);
+  Character outline;
+  ConstraintSolver constraints;
+  WireRows wire_rows;
+  JointChain chain;
+  Blocks blocks;
+  TwistTable twists;
+};
+
 class Frame {
  public:
-  Frame(const Character& outline, const JointChain& chain, const Blocks& blocks);
+  explicit Frame(const CompiledCharacter& compiled);
 
-  ///   throws  invalid_input: as check_pose
-  void set(const Character& outline, const JointChain& chain, const Blocks& blocks, const TwistTable& twists,
-           const Pose& pose);
+  ///   throws  invalid_input: as check_pose and WireRows::check
+  void set(const CompiledCharacter& compiled, const Pose& pose);
 
   FrameData data(std::size_t part) const;
   const float* coefficients(std::size_t part) const {
@@ -46,12 +60,15 @@ class Frame {
   /// What differs from `before`: bits of shapes on a part, and whether a carrier moved.
   void changed_shapes(const Frame& before, std::size_t part, std::vector<std::uint64_t>& bits) const;
   bool has_moved(const Frame& before, std::size_t carrier) const;
+  bool has_wire_moved(const Frame& before, const WireRows& layout, std::size_t wire) const;
 
  private:
   void set_coefficients(const Blocks& blocks, const Pose& pose);
   void set_table(std::size_t table, const Blocks& blocks);
-  void set_matrices(const JointChain& chain, const std::vector<Node>& nodes, const Pose& pose);
+  void set_matrices(const CompiledCharacter& compiled, const Pose& pose);
   void set_rigid(const TwistTable& twists);
+  void set_rigid_of(std::size_t carrier);
+  void set_wires(const WireRows& layout, const Pose& pose);
 
   std::size_t shapes_ = 0, words_ = 0, carried_count_ = 0;  // carriers, with the identity past the last
   Eigen::VectorXd weights_;
@@ -59,10 +76,13 @@ class Frame {
   std::vector<float> coefficients_;         // shapes a table
   std::vector<std::uint64_t> active_;       // words a table
   std::vector<char> is_dense_;              // by table: nearly all shapes are active
+  std::vector<Transform> locals_;           // that obey the constraints
   std::vector<Affine> model_, carried_;
   std::vector<float> matrices_, rigid_, stretches_;
   bool has_stretch_ = false, has_twist_ = false;
   std::vector<char> is_twisted_;  // by carrier
+  WireMotion wires_;
+  std::vector<float> wire_rows_, wire_scales_;
 };
 
 }  // namespace mien::detail

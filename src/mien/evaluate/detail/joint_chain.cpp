@@ -21,6 +21,11 @@ Affine affine(const Eigen::Matrix4d& matrix) {
   return {matrix.topLeftCorner<3, 3>(), matrix.topRightCorner<3, 1>()};
 }
 
+Affine local_affine(const Node& node, const Transform& local) {
+  if (node.has_matrix) return affine(local_matrix(node, local));
+  return {local.rotation.toRotationMatrix() * local.scale.asDiagonal(), local.translation};
+}
+
 Character outline(const Character& character) {
   Character kept;
   kept.nodes = character.nodes;
@@ -69,13 +74,13 @@ int JointChain::link_of(int node) const {
   return static_cast<std::size_t>(node) < link_of_node_.size() ? link_of_node_[node] : -1;
 }
 
-void JointChain::evaluate(const std::vector<Node>& nodes, const Pose& pose, std::vector<Affine>& model,
-                          std::vector<Affine>& carried) const {
+void JointChain::evaluate(const std::vector<Node>& nodes, const std::vector<Transform>& locals,
+                          std::vector<Affine>& model, std::vector<Affine>& carried) const {
   model.resize(links_.size());
   carried.resize(carriers_.size());
   for (std::size_t l = 0; l < links_.size(); ++l) {
     const auto [node, parent] = links_[l];
-    const Affine local = affine(local_matrix(nodes[node], pose.locals[node]));
+    const Affine local = local_affine(nodes[node], locals[node]);
     model[l] = parent < 0 ? local : model[parent] * local;
   }
   for (std::size_t c = 0; c < carriers_.size(); ++c)

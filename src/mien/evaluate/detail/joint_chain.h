@@ -21,6 +21,8 @@ struct Affine {
   }
 };
 Affine affine(const Eigen::Matrix4d& matrix);
+/// local_matrix of pose.h, without its last row.
+Affine local_affine(const Node& node, const Transform& local);
 
 /// What an evaluator keeps of a character: its nodes and its shapes' names, without surfaces.
 Character outline(const Character& character);
@@ -50,9 +52,9 @@ class JointChain {
   int link_of(int node) const;
 
   /// Node to model space for every link, and bind pose (or part's space) to model space for every carrier.
-  /// Both are resized; `pose` has been checked.
-  void evaluate(const std::vector<Node>& nodes, const Pose& pose, std::vector<Affine>& model,
-                std::vector<Affine>& carried) const;
+  /// Both are resized; `locals` have been checked.
+  void evaluate(const std::vector<Node>& nodes, const std::vector<Transform>& locals,
+                std::vector<Affine>& model, std::vector<Affine>& carried) const;
 
  private:
   int add_link(const Character& character, int node);

@@ -2,7 +2,8 @@
 /// The inner loops of the Evaluator: plain data in, blocks of 16 vertices out, one build for each instruction set.
 ///
 /// A block holds its vertices as 16 x, 16 y, 16 z. Its shapes and its joints are lists of its own: an entry of a shape is
-/// 48 deltas, an entry of a joint 16 skin weights, in the same lanes as the vertices.
+/// 48 deltas, an entry of a joint 16 skin weights, in the same lanes as the vertices. Weights sum to one: those of a block's
+/// first joint are what the others leave and are not stored.
 
 #include <cstddef>
 #include <cstdint>
@@ -15,6 +16,22 @@ inline constexpr std::size_t bake_width = 8;  ///< frames that a bake takes thro
 
 enum class BlockSkin : std::uint8_t { none, linear, dual_quaternion };
 
+/// One wire in one block. It moves each lane by
+///   sum of weight x row over its control points + (scale + (sum of weight x row over its turns) x) arm
+struct WireEntry {
+  std::uint32_t wire = 0;
+  std::uint32_t begin = 0, turns = 0, end = 0;  // weight entries: of control points, then of turns
+};
+
+/// Views of what `compile_wires` packed.
+struct WireData {
+  const std::uint32_t* begin = nullptr;  // blocks + 1
+  const WireEntry* entries = nullptr;    // of a block ascending by wire
+  const std::uint32_t* rows = nullptr;   // by weight entry: which row of FrameData::wire_rows
+  const float* weights = nullptr;        // 16 a weight entry
+  const float* arms = nullptr;           // block_floats an entry
+};
+
 /// Views of what `compile_blocks` packed. Entries of block b are [begin[b], begin[b + 1]).
 struct BlockData {
   const float* neutral = nullptr;              // block_floats a block
@@ -24,9 +41,10 @@ struct BlockData {
   const std::int16_t* compact = nullptr;       // the same as multiples of the shape's scale
   const std::uint64_t* shape_bits = nullptr;   // `words` a block: which shapes it lists
   std::size_t words = 0;
-  const std::uint32_t* joint_begin = nullptr;  // blocks + 1
+  const std::uint32_t* joint_begin = nullptr;  // blocks + 1; every block has an entry
   const std::uint16_t* joints = nullptr;       // carrier by joint entry
-  const float* joint_weights = nullptr;        // 16 a joint entry
+  const float* joint_weights = nullptr;        // 16 a joint entry but a block's first
+  WireData wires;
 };
 
 /// One pose as the kernels want it.
@@ -36,14 +54,19 @@ struct FrameData {
   const float* matrices = nullptr;        // 12 a carrier: rows of 4
   const float* rigid = nullptr;           // 8 a carrier: real x, y, z, w, dual x, y, z, w
   const float* stretches = nullptr;       // 9 a carrier by rows; null: none stretches
-  const float* joint_weights =
-      nullptr;  // of the one block asked for, in place of BlockData's; null: BlockData's
+  const float* wire_rows = nullptr;       // 3 a row; null: no wire moves
+  const float* wire_scales = nullptr;     // by wire
+  const char* is_moving = nullptr;        // by wire
+  /// Of the one block asked for, 16 a joint entry: skin weights, those with a minus that count the other quaternion of the
+  /// two that are one rotation; null: BlockData's.
+  const float* turned_weights = nullptr;
 };
 
 /// A run of blocks with one kind of skin, and where their vertices go.
 struct BlockRun {
   std::size_t begin = 0, end = 0;
   BlockSkin skin = BlockSkin::none;
+  const float* to_part = nullptr;          // 9 by rows: what wires add, to the part's space; null: the same
   float* blocks = nullptr;                 // block b goes to blocks + block_floats b; or, when null,
   float* rows = nullptr;                   // lane l of block b goes to rows + 3 row[16 b + l],
   const std::int32_t* row = nullptr;       // -1: nowhere

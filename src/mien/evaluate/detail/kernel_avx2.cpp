@@ -31,6 +31,9 @@ MIEN_OPERATION Lanes all(float value) {
 MIEN_OPERATION Lanes add(Lanes p, Lanes q) {
   return {_mm256_add_ps(p.a, q.a), _mm256_add_ps(p.b, q.b)};
 }
+MIEN_OPERATION Lanes subtract(Lanes p, Lanes q) {
+  return {_mm256_sub_ps(p.a, q.a), _mm256_sub_ps(p.b, q.b)};
+}
 MIEN_OPERATION Lanes multiply(Lanes p, Lanes q) {
   return {_mm256_mul_ps(p.a, q.a), _mm256_mul_ps(p.b, q.b)};
 }
@@ -45,10 +48,6 @@ MIEN_OPERATION Lanes multiply_subtract(Lanes p, Lanes q, Lanes r) {
 }
 MIEN_OPERATION Lanes multiply_subtract_from(Lanes p, Lanes q, Lanes r) {
   return {_mm256_fnmadd_ps(p.a, q.a, r.a), _mm256_fnmadd_ps(p.b, q.b, r.b)};
-}
-MIEN_OPERATION Lanes magnitude(Lanes p) {
-  const __m256 sign = _mm256_set1_ps(-0.f);
-  return {_mm256_andnot_ps(sign, p.a), _mm256_andnot_ps(sign, p.b)};
 }
 MIEN_OPERATION void store(float* to, Lanes p) {
   _mm256_storeu_ps(to, p.a);

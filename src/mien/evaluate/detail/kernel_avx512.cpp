@@ -30,6 +30,9 @@ MIEN_OPERATION Lanes all(float value) {
 MIEN_OPERATION Lanes add(Lanes a, Lanes b) {
   return _mm512_add_ps(a, b);
 }
+MIEN_OPERATION Lanes subtract(Lanes a, Lanes b) {
+  return _mm512_sub_ps(a, b);
+}
 MIEN_OPERATION Lanes multiply(Lanes a, Lanes b) {
   return _mm512_mul_ps(a, b);
 }
@@ -44,9 +47,6 @@ MIEN_OPERATION Lanes multiply_subtract(Lanes a, Lanes b, Lanes c) {
 }
 MIEN_OPERATION Lanes multiply_subtract_from(Lanes a, Lanes b, Lanes c) {
   return _mm512_fnmadd_ps(a, b, c);
-}
-MIEN_OPERATION Lanes magnitude(Lanes a) {
-  return _mm512_abs_ps(a);
 }
 MIEN_OPERATION void store(float* to, Lanes a) {
   _mm512_storeu_ps(to, a);

@@ -60,76 +60,115 @@ MIEN_INLINE Lanes3 shaped(const BlockData& data, const FrameData& frame, std::si
   return p;
 }
 
-MIEN_INLINE Lanes row_times(const float* row, const Lanes3& p) {
-  return multiply_add(all(row[0]), p.x,
-                      multiply_add(all(row[1]), p.y, multiply_add(all(row[2]), p.z, all(row[3]))));
-}
-
-MIEN_INLINE const float* weights_of(const BlockData& data, const FrameData& frame, std::size_t block) {
-  return frame.joint_weights ? frame.joint_weights
-                             : data.joint_weights + lane_count * data.joint_begin[block];
-}
-
-/// Rows [begin, end) of the blended matrices, times p. More rows at a time load the weights less often and take more
-/// registers.
-template <std::size_t begin, std::size_t end>
-MIEN_INLINE void blended_rows(const BlockData& data, const FrameData& frame, std::size_t block,
-                              const Lanes3& p, Lanes* out) {
-  const std::uint16_t* joint = data.joints + data.joint_begin[block];
-  const std::size_t count = data.joint_begin[block + 1] - data.joint_begin[block];
-  const float* weights = weights_of(data, frame, block);
-  const float* matrix = frame.matrices + 12 * joint[0];
-  Lanes m[4 * end], w = load(weights);
-  for (std::size_t k = 4 * begin; k < 4 * end; ++k) m[k] = multiply(w, all(matrix[k]));
-  for (std::size_t j = 1; j < count; ++j) {
-    matrix = frame.matrices + 12 * joint[j];
-    w = load(weights + lane_count * j);
-    for (std::size_t k = 4 * begin; k < 4 * end; ++k) m[k] = multiply_add(w, all(matrix[k]), m[k]);
-  }
-  for (std::size_t i = begin; i < end; ++i)
-    out[i] = multiply_add(m[4 * i], p.x,
-                          multiply_add(m[4 * i + 1], p.y, multiply_add(m[4 * i + 2], p.z, m[4 * i + 3])));
-}
-
-/// The matrices' blend times p. A block of one joint needs no weights.
-MIEN_INLINE Lanes3 skinned_linear(const BlockData& data, const FrameData& frame, std::size_t block,
-                                  const Lanes3& p) {
-  if (data.joint_begin[block + 1] - data.joint_begin[block] == 1) {
-    const float* m = frame.matrices + 12 * data.joints[data.joint_begin[block]];
-    return {row_times(m, p), row_times(m + 4, p), row_times(m + 8, p)};
-  }
-  Lanes y[3];
-  if constexpr (has_many_registers) {
-    blended_rows<0, 3>(data, frame, block, p, y);
-  } else {
-    blended_rows<0, 1>(data, frame, block, p, y);
-    blended_rows<1, 2>(data, frame, block, p, y);
-    blended_rows<2, 3>(data, frame, block, p, y);
-  }
-  return {y[0], y[1], y[2]};
-}
-
-MIEN_INLINE Lanes3 stretched(const BlockData& data, const FrameData& frame, std::size_t block,
-                             const Lanes3& p) {
-  const float* weights = weights_of(data, frame, block);
-  Lanes3 sum{all(0), all(0), all(0)};
-  for (std::uint32_t e = data.joint_begin[block]; e < data.joint_begin[block + 1];
-       ++e, weights += lane_count) {
-    const float* s = frame.stretches + 9 * data.joints[e];
-    const Lanes w = magnitude(load(weights));
-    sum.x = multiply_add(
-        w, multiply_add(all(s[0]), p.x, multiply_add(all(s[1]), p.y, multiply(all(s[2]), p.z))), sum.x);
-    sum.y = multiply_add(
-        w, multiply_add(all(s[3]), p.x, multiply_add(all(s[4]), p.y, multiply(all(s[5]), p.z))), sum.y);
-    sum.z = multiply_add(
-        w, multiply_add(all(s[6]), p.x, multiply_add(all(s[7]), p.y, multiply(all(s[8]), p.z))), sum.z);
-  }
-  return sum;
+MIEN_INLINE void add_row(const float* row, Lanes w, Lanes3& sum) {
+  sum.x = multiply_add(w, all(row[0]), sum.x);
+  sum.y = multiply_add(w, all(row[1]), sum.y);
+  sum.z = multiply_add(w, all(row[2]), sum.z);
 }
 
 MIEN_INLINE Lanes3 cross(const Lanes3& a, const Lanes3& b) {
   return {multiply_subtract(a.y, b.z, multiply(a.z, b.y)), multiply_subtract(a.z, b.x, multiply(a.x, b.z)),
           multiply_subtract(a.x, b.y, multiply(a.y, b.x))};
+}
+
+MIEN_INLINE Lanes3 multiplied(const float* matrix, const Lanes3& p) {
+  const auto row = [&](const float* m) MIEN_TARGET {
+    return multiply_add(all(m[0]), p.x, multiply_add(all(m[1]), p.y, multiply(all(m[2]), p.z)));
+  };
+  return {row(matrix), row(matrix + 3), row(matrix + 6)};
+}
+
+MIEN_INLINE void add_wire(const WireData& wires, const FrameData& frame, std::uint32_t e, Lanes3& sum) {
+  const WireEntry& entry = wires.entries[e];
+  const float* weights = wires.weights + std::size_t{lane_count} * entry.begin;
+  std::uint32_t k = entry.begin;
+  for (; k < entry.turns; ++k, weights += lane_count)
+    add_row(frame.wire_rows + 3 * wires.rows[k], load(weights), sum);
+  const float* at = wires.arms + std::size_t{block_floats} * e;
+  const Lanes3 arm{load(at), load(at + 16), load(at + 32)};
+  Lanes3 turn{all(0), all(0), all(0)};
+  for (; k < entry.end; ++k, weights += lane_count)
+    add_row(frame.wire_rows + 3 * wires.rows[k], load(weights), turn);
+  const Lanes3 turned = cross(turn, arm);
+  const Lanes scale = all(frame.wire_scales[entry.wire]);
+  sum = {add(sum.x, multiply_add(scale, arm.x, turned.x)), add(sum.y, multiply_add(scale, arm.y, turned.y)),
+         add(sum.z, multiply_add(scale, arm.z, turned.z))};
+}
+
+/// What the moving wires add to a block's shaped vertices.
+MIEN_INLINE void add_wires(const BlockData& data, const FrameData& frame, const float* to_part,
+                           std::size_t block, Lanes3& p) {
+  Lanes3 sum{all(0), all(0), all(0)};
+  bool is_moved = false;
+  for (std::uint32_t e = data.wires.begin[block]; e < data.wires.begin[block + 1]; ++e) {
+    if (!frame.is_moving[data.wires.entries[e].wire]) continue;
+    add_wire(data.wires, frame, e, sum);
+    is_moved = true;
+  }
+  if (!is_moved) return;
+  if (to_part) sum = multiplied(to_part, sum);
+  p = {add(p.x, sum.x), add(p.y, sum.y), add(p.z, sum.z)};
+}
+
+/// A block's joints, and the skin weights of all but the first.
+struct BlockJoints {
+  const std::uint16_t *first, *end;
+  const float* weights;
+};
+
+MIEN_INLINE BlockJoints joints_of(const BlockData& data, std::size_t block) {
+  const std::uint32_t begin = data.joint_begin[block];
+  return {data.joints + begin, data.joints + data.joint_begin[block + 1],
+          data.joint_weights + lane_count * (begin - block)};
+}
+
+/// The skin weights of the first joint.
+MIEN_INLINE Lanes first_weights(const BlockJoints& joints) {
+  const float* weights = joints.weights;
+  Lanes left = all(1);
+  for (const std::uint16_t* joint = joints.first + 1; joint < joints.end; ++joint, weights += lane_count)
+    left = subtract(left, load(weights));
+  return left;
+}
+
+MIEN_INLINE Lanes row_times(const float* row, const Lanes3& p) {
+  return multiply_add(all(row[0]), p.x,
+                      multiply_add(all(row[1]), p.y, multiply_add(all(row[2]), p.z, all(row[3]))));
+}
+
+MIEN_INLINE void add_weighted(Lanes w, const float* matrix, const Lanes3& p, Lanes3& sum) {
+  sum.x = multiply_add(w, row_times(matrix, p), sum.x);
+  sum.y = multiply_add(w, row_times(matrix + 4, p), sum.y);
+  sum.z = multiply_add(w, row_times(matrix + 8, p), sum.z);
+}
+
+/// Blends what the joints make of p: as many multiplications as to blend their matrices, in half the registers, so that
+/// one pass over the weights makes all three coordinates.
+MIEN_INLINE Lanes3 skinned_linear(const BlockData& data, const FrameData& frame, std::size_t block,
+                                  const Lanes3& p) {
+  const BlockJoints joints = joints_of(data, block);
+  const float* weights = joints.weights;
+  Lanes3 sum{all(0), all(0), all(0)};
+  for (const std::uint16_t* joint = joints.first + 1; joint < joints.end; ++joint, weights += lane_count)
+    add_weighted(load(weights), frame.matrices + 12 * *joint, p, sum);
+  add_weighted(first_weights(joints), frame.matrices + 12 * *joints.first, p, sum);
+  return sum;
+}
+
+MIEN_INLINE void add_stretch(const float* matrix, Lanes w, const Lanes3& p, Lanes3& sum) {
+  const Lanes3 q = multiplied(matrix, p);
+  sum = {multiply_add(w, q.x, sum.x), multiply_add(w, q.y, sum.y), multiply_add(w, q.z, sum.z)};
+}
+
+MIEN_INLINE Lanes3 stretched(const BlockData& data, const FrameData& frame, std::size_t block,
+                             const Lanes3& p) {
+  const BlockJoints joints = joints_of(data, block);
+  const float* weights = joints.weights;
+  Lanes3 sum{all(0), all(0), all(0)};
+  add_stretch(frame.stretches + 9 * *joints.first, first_weights(joints), p, sum);
+  for (const std::uint16_t* joint = joints.first + 1; joint < joints.end; ++joint, weights += lane_count)
+    add_stretch(frame.stretches + 9 * *joint, load(weights), p, sum);
+  return sum;
 }
 
 /// With r and d the blended parts, v the vector part of r: p + 2 (v x (v x p + w p) + w dv - dw v + v x dv) / |r|^2.
@@ -148,21 +187,21 @@ MIEN_INLINE Lanes3 moved_rigidly(const Lanes* r, const Lanes* d, const Lanes3& p
   return {multiply_add(twice, x, p.x), multiply_add(twice, y, p.y), multiply_add(twice, z, p.z)};
 }
 
+MIEN_INLINE void add_weighted(Lanes w, const float* quaternion, Lanes* sum) {
+  for (int k = 0; k < 8; ++k) sum[k] = multiply_add(w, all(quaternion[k]), sum[k]);
+}
+
 MIEN_INLINE Lanes3 skinned_dual_quaternion(const BlockData& data, const FrameData& frame, std::size_t block,
                                            const Lanes3& p) {
-  const float* weights = weights_of(data, frame, block);
-  Lanes real[4] = {all(0), all(0), all(0), all(0)}, dual[4] = {all(0), all(0), all(0), all(0)};
+  const BlockJoints joints = joints_of(data, block);
+  const float *turned = frame.turned_weights, *weights = turned ? turned + lane_count : joints.weights;
   const Lanes3 q = frame.stretches ? stretched(data, frame, block, p) : p;
-  for (std::uint32_t e = data.joint_begin[block]; e < data.joint_begin[block + 1];
-       ++e, weights += lane_count) {
-    const float* joint = frame.rigid + 8 * data.joints[e];
-    const Lanes w = load(weights);
-    for (int k = 0; k < 4; ++k) {
-      real[k] = multiply_add(w, all(joint[k]), real[k]);
-      dual[k] = multiply_add(w, all(joint[4 + k]), dual[k]);
-    }
-  }
-  return moved_rigidly(real, dual, q);
+  Lanes sum[8];
+  for (Lanes& part : sum) part = all(0);
+  for (const std::uint16_t* joint = joints.first + 1; joint < joints.end; ++joint, weights += lane_count)
+    add_weighted(load(weights), frame.rigid + 8 * *joint, sum);
+  add_weighted(turned ? load(turned) : first_weights(joints), frame.rigid + 8 * *joints.first, sum);
+  return moved_rigidly(sum, sum + 4, q);
 }
 
 MIEN_INLINE Lanes3 skinned(const BlockData& data, const FrameData& frame, BlockSkin skin, std::size_t block,
@@ -199,7 +238,9 @@ MIEN_INLINE void stream_block(float* to, const Lanes3& p) {
 
 MIEN_TARGET void evaluate(const BlockData& data, const FrameData& frame, const BlockRun& run) {
   for (std::size_t b = run.begin; b < run.end; ++b) {
-    const Lanes3 p = skinned(data, frame, run.skin, b, shaped(data, frame, b));
+    Lanes3 p = shaped(data, frame, b);
+    if (frame.wire_rows) add_wires(data, frame, run.to_part, b, p);
+    p = skinned(data, frame, run.skin, b, p);
     if (run.blocks)
       store_block(run.blocks + block_floats * b, p);
     else
@@ -259,6 +300,7 @@ MIEN_TARGET void bake(const BlockData& data, const BakeFrames& bake, const Block
       bake_block(data, data.deltas, bake, b, p);
     for (std::size_t f = 0; f < bake_width; ++f) {
       if (!bake.lanes[f]) continue;
+      if (bake.frames[f].wire_rows) add_wires(data, bake.frames[f], run.to_part, b, p[f]);
       const Lanes3 q = skinned(data, bake.frames[f], run.skin, b, p[f]);
       float* to = bake.lanes[f] + block_floats * b;
       if (bake.interleave)

@@ -28,6 +28,11 @@ inline Lanes add(const Lanes& a, const Lanes& b) {
   for (std::size_t l = 0; l < lane_count; ++l) r.v[l] = a.v[l] + b.v[l];
   return r;
 }
+inline Lanes subtract(const Lanes& a, const Lanes& b) {
+  Lanes r;
+  for (std::size_t l = 0; l < lane_count; ++l) r.v[l] = a.v[l] - b.v[l];
+  return r;
+}
 inline Lanes multiply(const Lanes& a, const Lanes& b) {
   Lanes r;
   for (std::size_t l = 0; l < lane_count; ++l) r.v[l] = a.v[l] * b.v[l];
@@ -51,11 +56,6 @@ inline Lanes multiply_subtract(const Lanes& a, const Lanes& b, const Lanes& c) {
 inline Lanes multiply_subtract_from(const Lanes& a, const Lanes& b, const Lanes& c) {
   Lanes r;
   for (std::size_t l = 0; l < lane_count; ++l) r.v[l] = c.v[l] - a.v[l] * b.v[l];
-  return r;
-}
-inline Lanes magnitude(const Lanes& a) {
-  Lanes r;
-  for (std::size_t l = 0; l < lane_count; ++l) r.v[l] = a.v[l] < 0 ? -a.v[l] : a.v[l];
   return r;
 }
 inline void store(float* to, const Lanes& a) {

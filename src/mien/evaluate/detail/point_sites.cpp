@@ -37,6 +37,7 @@ PointSites::PointSites(const Character& character, const std::vector<SurfacePoin
     add_point(character, points[p], known);
   }
   add_deltas(character, known);
+  add_wires(character, known);
 }
 
 void PointSites::add_point(const Character& character, const SurfacePoint& point, Known& known) {
@@ -106,6 +107,22 @@ void PointSites::add_deltas(const Character& character, const Known& known) {
     sites[i].delta_begin = static_cast<int>(deltas.size());
     deltas.insert(deltas.end(), of_site[i].begin(), of_site[i].end());
     sites[i].delta_end = static_cast<int>(deltas.size());
+  }
+}
+
+void PointSites::add_wires(const Character& character, const Known& known) {
+  const WireField field(character, character.wires);
+  for (const int part : parts) to_part.push_back(field.to_part(part));
+  for (const auto& [at, index] : known) {
+    const WireField::PartRows& rows = field.parts()[at.first];
+    Site& site = sites[index];
+    site.wire_begin = site.wire_end = static_cast<int>(wire_entries.size());
+    const auto vertex = std::lower_bound(rows.vertices.begin(), rows.vertices.end(), at.second);
+    if (vertex == rows.vertices.end() || *vertex != at.second) continue;
+    const auto row = vertex - rows.vertices.begin();
+    wire_entries.insert(wire_entries.end(), rows.entries.begin() + rows.offsets[row],
+                        rows.entries.begin() + rows.offsets[row + 1]);
+    site.wire_end = static_cast<int>(wire_entries.size());
   }
 }
 

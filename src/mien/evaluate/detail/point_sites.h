@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "mien/character/character.h"
+#include "mien/deform/wires.h"
 #include "mien/evaluate/detail/joint_chain.h"
 
 namespace mien::detail {
@@ -15,6 +16,7 @@ struct Site {
   int column = 0;  // index into PointSites::parts
   Eigen::Vector3d neutral;
   int delta_begin = 0, delta_end = 0;
+  int wire_begin = 0, wire_end = 0;
   int influence_begin = 0, influence_end = 0;  // none: the site is in model space already
   bool is_dual_quaternion = false;
 };
@@ -40,7 +42,9 @@ struct PointSites {
   std::vector<int> parts;  // the parts that have sites
   std::vector<Site> sites;
   std::vector<Delta> deltas;
-  std::vector<Influence> influences;  // the strongest of a site first
+  std::vector<WireField::Entry> wire_entries;
+  std::vector<Eigen::Matrix3d> to_part;  // by column: model space vectors to the part's space
+  std::vector<Influence> influences;     // the strongest of a site first
   std::vector<Term> terms;
   JointChain chain;
 
@@ -52,6 +56,7 @@ struct PointSites {
   int add_site(const Character& character, int part, int vertex, Known& known);
   void add_influences(const Character& character, const Part& part, int vertex);
   void add_deltas(const Character& character, const Known& known);
+  void add_wires(const Character& character, const Known& known);
 };
 
 }  // namespace mien::detail

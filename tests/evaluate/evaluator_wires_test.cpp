@@ -1,0 +1,239 @@
+// Wires in compiled evaluators: what the reference makes of them.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <functional>
+
+#include "evaluate/rigs.h"
+#include "mien/core/error.h"
+#include "mien/evaluate/evaluate.h"
+#include "mien/evaluate/evaluator.h"
+#include "mien/evaluate/point_evaluator.h"
+
+namespace mien {
+namespace {
+
+using ::testing::HasSubstr;
+
+constexpr InstructionSet all_sets[] = {InstructionSet::plain, InstructionSet::avx2, InstructionSet::avx512};
+
+std::vector<float> evaluated(Evaluator& evaluator, const Pose& pose) {
+  std::vector<float> positions(3 * evaluator.vertex_count(), NAN);
+  evaluator.evaluate(pose, positions);
+  return positions;
+}
+
+std::vector<float> joined(const std::vector<Points>& parts) {
+  std::vector<float> all;
+  for (const Points& part : parts) all.insert(all.end(), part.data(), part.data() + part.size());
+  return all;
+}
+
+double distance(const std::vector<float>& a, const std::vector<float>& b) {
+  double most = a.size() == b.size() ? 0 : 1e30;
+  for (std::size_t i = 0; i < a.size() && i < b.size(); ++i)
+    most = std::max<double>(most, std::abs(a[i] - b[i]));
+  return most;
+}
+
+double reach(const Character& character, const Pose& pose) {
+  double most = 0;
+  for (const float x : joined(evaluate(character, pose))) most = std::max<double>(most, std::abs(x));
+  for (const Eigen::Matrix4d& matrix : model_matrices(character, pose))
+    most = std::max(most, matrix.topRightCorner<3, 1>().cwiseAbs().maxCoeff());
+  return most + 1;  // neutral coordinates are below one
+}
+
+bool same_bytes(const std::vector<float>& a, const std::vector<float>& b) {
+  return a.size() == b.size() && std::memcmp(a.data(), b.data(), 4 * a.size()) == 0;
+}
+
+TEST(EvaluatorWires, InvalidInputs) {
+  const Character character = test::wired_rig(1);
+  Evaluator evaluator(character);
+  PointEvaluator points(character, {{0, -1, 3, {1, 0, 0}, {0, 1, 2}}});
+  std::vector<float> out(3 * evaluator.vertex_count());
+  PointsD few;
+  const auto error_of = [&](const WireMove& move) {
+    Pose pose = rest_pose(character);
+    pose.wires = {move};
+    std::string text;
+    for (const auto& call : {std::function<void()>([&] { evaluator.evaluate(pose, out); }),
+                             std::function<void()>([&] { points.positions(pose, few); }),
+                             std::function<void()>([&] { evaluate(character, pose); })}) {
+      std::string here;
+      try {
+        call();
+      } catch (const Error& error) {
+        here = error.what();
+      }
+      EXPECT_TRUE(text.empty() || text == here) << text << " | " << here;
+      text = here;
+    }
+    return text;
+  };
+  EXPECT_THAT(error_of({9, {}, 0, {}}), HasSubstr("wire 9: does not exist"));
+  EXPECT_THAT(error_of({0, PointsD::Zero(3, 3), 0, {}}), HasSubstr("is moved by 3 control points"));
+  EXPECT_THAT(error_of({1, {}, NAN, {}}), HasSubstr("has a scale that is not finite"));
+}
+
+TEST(EvaluatorWires, AgreeWithEvaluate) {
+  for (unsigned seed = 0; seed < 24; ++seed) {
+    const Character character = test::wired_rig(seed);
+    const Pose pose = test::wired_pose(character, seed);
+    const auto exact = joined(evaluate(character, pose));
+    for (const InstructionSet set : all_sets) {
+      if (!is_supported(set)) continue;
+      Evaluator evaluator(character, {DeltaPrecision::exact, set, {}});
+      EXPECT_LT(distance(exact, evaluated(evaluator, pose)), evaluator_tolerance * reach(character, pose))
+          << "seed " << seed << ", " << name_of(set);
+    }
+  }
+}
+
+TEST(EvaluatorWires, CompactDeltasLeaveWiresExact) {
+  for (unsigned seed = 0; seed < 8; ++seed) {
+    const Character character = test::wired_rig(seed);
+    Pose pose = test::wired_pose(character, seed);
+    pose.shape_weights.values.setZero();
+    Evaluator evaluator(character, {DeltaPrecision::compact, InstructionSet::best, {}});
+    EXPECT_LT(distance(joined(evaluate(character, pose)), evaluated(evaluator, pose)),
+              evaluator_tolerance * reach(character, pose));
+  }
+}
+
+TEST(EvaluatorWires, AtRestNothingMovesBitForBit) {
+  const Character character = test::wired_rig(5);
+  Pose pose = test::random_pose(character, 5);
+  Evaluator evaluator(character);
+  const auto still = evaluated(evaluator, pose);
+  pose.wires = {{0, PointsD::Zero(character.wires[0].curve.control_count(), 3), 0, {}}, {1, {}, 0, {}}};
+  EXPECT_TRUE(same_bytes(still, evaluated(evaluator, pose)));
+}
+
+TEST(EvaluatorWires, UpdateGivesWhatEvaluateGives) {
+  for (unsigned seed = 0; seed < 6; ++seed) {
+    const Character character = test::wired_rig(seed);
+    Evaluator evaluator(character), other(character);
+    Pose pose = test::wired_pose(character, seed);
+    std::vector<float> kept(3 * evaluator.vertex_count());
+    evaluator.update(pose, kept);
+    EXPECT_EQ(evaluator.update(pose, kept), 0u);
+    for (int step = 0; step < 8; ++step) {
+      if (step % 4 == 0) pose.wires[0].scale += 0.1;
+      if (step % 4 == 1) pose.wires[1].controls(1, 2) += 0.1;
+      if (step % 4 == 2) std::swap(pose.wires[0], pose.wires[1]);
+      if (step % 4 == 3) pose.wires.erase(pose.wires.begin());
+      if (pose.wires.size() < 2) pose.wires = test::wired_pose(character, seed + 1).wires;
+      evaluator.update(pose, kept);
+      ASSERT_TRUE(same_bytes(kept, evaluated(other, pose))) << "seed " << seed << ", step " << step;
+    }
+    pose.wires.clear();
+    evaluator.update(pose, kept);
+    EXPECT_TRUE(same_bytes(kept, evaluated(other, pose)));
+  }
+}
+
+TEST(EvaluatorWires, OneWireUpdatesTheBlocksThatItReaches) {
+  Character character;
+  character.parts.emplace_back();
+  character.parts[0].mesh.positions = Points::Random(1600, 3);
+  test::Random random(1);
+  for (int w = 0; w < 2; ++w) {
+    character.wires.push_back(test::random_wire(random, w, 5));
+    character.wires[w].bindings = {{0, {7 + 800 * w, 90 + 800 * w}, {1, 0.5f}, {0.2f, 0.7f}}};
+  }
+  Evaluator evaluator(character);
+  std::vector<float> out(3 * 1600);
+  Pose pose = rest_pose(character);
+  EXPECT_EQ(evaluator.update(pose, out), 100u);
+  pose.wires = {{1, PointsD::Ones(5, 3), 0, {}}};
+  EXPECT_LE(evaluator.update(pose, out), 2u);
+  EXPECT_NEAR(out[3 * 807], character.parts[0].mesh.positions(807, 0) + 1, 1e-6);  // alone, falloff 1
+  EXPECT_EQ(out[3 * 7], character.parts[0].mesh.positions(7, 0));
+}
+
+TEST(EvaluatorWires, ChosenVerticesAndBakes) {
+  const Character character = test::wired_rig(4);
+  std::vector<Pose> poses;
+  for (unsigned f = 0; f < 11; ++f) poses.push_back(test::wired_pose(character, f));
+  poses[4].wires.clear();
+  for (const InstructionSet set : all_sets) {
+    if (!is_supported(set)) continue;
+    Evaluator whole(character, {DeltaPrecision::exact, set, {}});
+    Evaluator part(character, {DeltaPrecision::exact, set, {{4, 0, 2}, {1}, {3}}});
+    std::vector<float> frames(poses.size() * 3 * whole.vertex_count()), single;
+    whole.bake(poses, frames);
+    const std::size_t rows[] = {4, 0, 2, whole.first_row(1) + 1, whole.first_row(2) + 3};
+    for (const Pose& pose : poses) {
+      const auto all = evaluated(whole, pose), few = evaluated(part, pose);
+      single.insert(single.end(), all.begin(), all.end());
+      for (std::size_t i = 0; i < few.size(); ++i) EXPECT_EQ(few[i], all[3 * rows[i / 3] + i % 3]);
+    }
+    EXPECT_TRUE(same_bytes(frames, single)) << name_of(set);
+  }
+}
+
+TEST(EvaluatorWires, ClipsWithWireChannelsBake) {
+  Character character = test::wired_rig(2);
+  Clip clip;
+  clip.name = "wires";
+  Channel scale;
+  scale.property = Channel::Property::wire_scale;
+  scale.wire = 1;
+  scale.times = {0, 1};
+  scale.values = {0, 0.5f};
+  Channel control = scale;
+  control.property = Channel::Property::wire_control;
+  control.wire = 0;
+  control.control = 2;
+  control.values = {0, 0, 0, 0.2f, -0.1f, 0.3f};
+  clip.channels = {scale, control};
+  std::vector<Pose> poses;
+  for (int f = 0; f < 10; ++f) poses.push_back(sample_clip(character, clip, 0.1 * f));
+  Evaluator evaluator(character);
+  const std::size_t size = 3 * evaluator.vertex_count();
+  std::vector<float> frames(poses.size() * size);
+  evaluator.bake(poses, frames);
+  for (std::size_t f = 0; f < poses.size(); ++f) {
+    const auto at = frames.begin() + static_cast<std::ptrdiff_t>(f * size);
+    EXPECT_LT(distance(joined(evaluate(character, poses[f])), {at, at + static_cast<std::ptrdiff_t>(size)}),
+              evaluator_tolerance * reach(character, poses[f]));
+  }
+}
+
+TEST(EvaluatorWires, PointsFollowThemAndTheirSlopesToo) {
+  for (unsigned seed = 0; seed < 8; ++seed) {
+    const Character character = test::wired_rig(seed);
+    const Pose pose = test::wired_pose(character, seed);
+    std::vector<SurfacePoint> all;
+    for (std::size_t p = 0; p < character.parts.size(); ++p)
+      for (int v = 0; v < static_cast<int>(character.parts[p].mesh.vertex_count()); ++v)
+        all.push_back({static_cast<int>(p), -1, v, {1, 0, 0}, {0, 1, 2}});
+    PointEvaluator points(character, all);
+    PointsD out;
+    points.positions(pose, out);
+    const auto exact = joined(evaluate(character, pose));
+    double most = 0;
+    for (Eigen::Index i = 0; i < out.size(); ++i)
+      most = std::max(most, std::abs(out(i / 3, i % 3) - exact[static_cast<std::size_t>(i)]));
+    EXPECT_LT(most, 1e-6 * reach(character, pose)) << "seed " << seed;
+
+    const Freedoms freedoms{{0, 3}, {}, {{1, true, true}}};
+    Eigen::MatrixXd slopes;
+    points.jacobian(pose, freedoms, slopes);
+    const double step = 1e-6;
+    Pose up = pose, down = pose;
+    up.locals[1].rotation = pose.locals[1].rotation * Eigen::AngleAxisd(step, Eigen::Vector3d::UnitY());
+    down.locals[1].rotation = pose.locals[1].rotation * Eigen::AngleAxisd(-step, Eigen::Vector3d::UnitY());
+    PointsD high, low;
+    points.positions(up, high);
+    points.positions(down, low);
+    for (Eigen::Index i = 0; i < out.size(); ++i)
+      EXPECT_NEAR(slopes(i, 3), (high(i / 3, i % 3) - low(i / 3, i % 3)) / (2 * step), 1e-6);
+  }
+}
+
+}  // namespace
+}  // namespace mien
