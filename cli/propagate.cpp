@@ -14,11 +14,6 @@ namespace {
 
 using nlohmann::json;
 
-/// Landmarks on all three, named alike.
-void mark(const std::string& file, Character& source, const std::string& target_file, Character& target) {
-  find_missing({file, source}, {target_file, target}, {});
-}
-
 json do_propagation(const Propagation& sources, const PropagationTarget& job, const JobsRequest& request,
                     SharedFaces& faces) {
   Character target = load_face(job.target.string(), job.landmarks.string());
@@ -29,9 +24,11 @@ json do_propagation(const Propagation& sources, const PropagationTarget& job, co
   if (!unchanged) {
     Character before = *faces.get(sources.before, sources.before_landmarks);
     Character after = *faces.get(sources.after, sources.after_landmarks);
-    mark(sources.before.string(), before, job.target.string(), target);
-    mark(sources.after.string(), after, job.target.string(), target);
-    PropagateResult result = propagate(before, after, target);
+    TransferOptions options;
+    const Side marked{job.target.string(), target};
+    find_missing({sources.before.string(), before}, marked, options);
+    find_missing({sources.after.string(), after}, marked, options);
+    PropagateResult result = propagate(before, after, target, options);
     target = std::move(result.character);
     target.landmarks = own.landmarks;
     target.curves = own.curves;
