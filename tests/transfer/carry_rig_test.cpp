@@ -39,7 +39,7 @@ void expect_sound_bindings(const Character& character) {
 
 TEST(carry_rig, everything_arrives_on_another_face) {
   const Character& character = on_cartoon().character;
-  EXPECT_THAT(problems_of(character), IsEmpty());
+  EXPECT_THAT(validate(character), IsEmpty());
   ASSERT_THAT(character.objects, SizeIs(4));
   ASSERT_THAT(character.wires, SizeIs(1));
   ASSERT_THAT(character.constraints, SizeIs(2));
@@ -103,7 +103,7 @@ TEST(carry_rig, a_moved_and_grown_target_gets_the_moved_and_grown_rig) {
 
 TEST(carry_rig, a_second_rig_replaces_the_first) {
   const Character again = transfer(rigged_human(), on_cartoon().character).character;
-  EXPECT_THAT(problems_of(again), IsEmpty());
+  EXPECT_THAT(validate(again), IsEmpty());
   EXPECT_THAT(again.objects, SizeIs(4));
   EXPECT_THAT(again.wires, SizeIs(1));
   EXPECT_THAT(again.constraints, SizeIs(2));
@@ -129,7 +129,7 @@ TEST(carry_rig, objects_alone_are_a_rig) {
     part.skin_weights = {};
   }
   const Character result = transfer(source, made("cartoon")).character;
-  EXPECT_THAT(problems_of(result), IsEmpty());
+  EXPECT_THAT(validate(result), IsEmpty());
   ASSERT_THAT(result.objects, SizeIs(4));
   expect_sound_bindings(result);
   EXPECT_THAT(result.skins, IsEmpty());
@@ -150,7 +150,7 @@ TEST(carry_rig, the_thesis_method_warps_control_points) {
   TransferOptions options;
   options.method = TransferMethod::thesis;
   const TransferResult result = transfer(rigged_human(), made("cartoon"), options);
-  EXPECT_THAT(problems_of(result.character), IsEmpty());
+  EXPECT_THAT(validate(result.character), IsEmpty());
   // Landmarks are met exactly, and so are control points that lie on them.
   for (const auto& [object, control, number] : {std::tuple{0, 0, 49}, {0, 3, 55}, {2, 0, 31}})
     EXPECT_LT(

@@ -180,6 +180,14 @@ inline const Character& rigged_human() {
   static const Character human = [] {
     Character character = made("human");
     character.controls.clear();
+    for (Shape& shape : character.shapes) {
+      shape.objects.clear();
+      shape.wires.clear();
+    }
+    for (Clip& clip : character.clips)
+      std::erase_if(clip.channels, [](const Channel& c) {
+        return c.moves_wire() || c.property == Channel::Property::object_control;
+      });
     add_objects(character);
     add_wires(character);
     add_constraints_and_controls(character);
@@ -188,14 +196,6 @@ inline const Character& rigged_human() {
     return character;
   }();
   return human;
-}
-
-/// What is wrong with it.
-inline std::vector<Problem> problems_of(Character character) {
-  for (Clip& clip : character.clips)
-    std::erase_if(clip.channels,
-                  [](const Channel& c) { return c.property == Channel::Property::object_control; });
-  return validate(character);
 }
 
 /// A mesh without any rig.

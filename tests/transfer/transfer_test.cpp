@@ -29,6 +29,9 @@ Character without_shapes(Character character) {
 Character without_joints(Character character) {
   character.skins.clear();
   character.clips.clear();
+  character.objects.clear();
+  character.constraints.clear();
+  character.controls.clear();
   for (Part& part : character.parts) {
     part.skin = -1;
     part.skin_weights = {};

@@ -120,7 +120,7 @@ TEST(twin, its_own_face_gives_everything_back) {
   const Character& human = rigged_human();
   const TransferResult result = transfer(human, bare(human));
   const Character& character = result.character;
-  EXPECT_THAT(problems_of(character), IsEmpty());
+  EXPECT_THAT(validate(character), IsEmpty());
   for (std::size_t s = 0; s < human.shapes.size(); ++s)
     EXPECT_LT(difference(character, s, human, s), 1e-6) << human.shapes[s].name;
   ASSERT_EQ(character.objects.size(), human.objects.size());
@@ -148,7 +148,7 @@ TEST(twin, a_subdivided_mesh_has_the_old_vertices_motion_and_the_mean_between_th
   const Character& human = made("human");
   Character mesh = bare(subdivided(human));
   const TransferResult result = transfer(human, mesh);
-  EXPECT_THAT(problems_of(result.character), IsEmpty());
+  EXPECT_THAT(validate(result.character), IsEmpty());
   std::vector<std::vector<int>> same;
   for (const Part& part : human.parts) {
     same.emplace_back();
@@ -190,7 +190,7 @@ TEST(twin, a_changed_nose_leaves_the_rest_of_the_face_as_it_was) {
     }
   }
   const TransferResult result = transfer(human, mesh);
-  EXPECT_THAT(problems_of(result.character), IsEmpty());
+  EXPECT_THAT(validate(result.character), IsEmpty());
   const double unit = result.report.unit;
   for (std::size_t s = 0; s < human.shapes.size(); ++s) {
     const PointsD own = delta_of(human, s, 0), got = delta_of(result.character, s, 0);

@@ -279,10 +279,10 @@ void Run::carry_shapes() {
                             scale_radius * registration_.unit);
   if (twin_)
     keep_scale(kept_, maps_.aligned, source_surface_.surface.triangles, registration_.unit, maps_.scale);
+  if (count == 0) return;
   result_.sliders = source_.sliders;
   result_.correctives = source_.correctives;
   result_.expressions = source_.expressions;
-  if (count == 0) return;
   const auto skin_delta = [&](std::size_t s) {
     return PointsD(pooled_delta(source_.shapes[s])(source_surface_.vertices, Eigen::all));
   };

@@ -57,6 +57,7 @@ class Run {
   void report_maps();
   void count_flips(std::size_t shape, const PointsD& source_rows, const PointsD& target_rows);
   bool carries_nodes() const;
+  std::vector<int> carried_sliders() const;
   SpaceMap space_map() const;
   RigMap rig_map() const;
   PointsD move(const PointsD& at, const PointsD& moves) const;

@@ -218,13 +218,19 @@ void Run::warn_of_dropped(const std::vector<std::string>& dropped, const std::st
        remedy);
 }
 
+/// Sliders drive shapes: without shapes there are none.
+std::vector<int> Run::carried_sliders() const {
+  return source_.shapes.empty() ? std::vector<int>(source_.sliders.size(), -1)
+                                : identity(source_.sliders.size());
+}
+
 void Run::carry_rig() {
   std::vector<std::string> dropped;
   const RigMap map = rig_map();
   result_.objects = carry_objects(source_, result_, map, dropped);
   result_.wires = carry_wires(source_, result_, map);
   result_.constraints = carry_constraints(source_, result_, map, dropped);
-  result_.controls = carry_controls(source_, identity(source_.sliders.size()), skeleton_.node_of, dropped);
+  result_.controls = carry_controls(source_, carried_sliders(), skeleton_.node_of, dropped);
   warn_of_dropped(dropped, "objects, constraints or controls name",
                   "have them name joints or nodes without a mesh on the source");
 }
@@ -235,7 +241,7 @@ void Run::carry_clips() {
   ClipMap map;
   map.nodes = node_motions(source_, skeleton_);
   map.shape_of = identity(source_.shapes.size());
-  map.slider_of = identity(source_.sliders.size());
+  map.slider_of = carried_sliders();
   map.wire_of = identity(source_.wires.size());
   map.object_of = identity(source_.objects.size());
   map.move = rig.move;
