@@ -4,6 +4,8 @@
 
 #include "full_character.h"
 #include "mien/io/load.h"
+#include "mien/io/vrm.h"
+#include "mien/naming/plan_vrm.h"
 #include "support.h"
 
 namespace mien {
@@ -105,6 +107,16 @@ TEST_F(GltfValidator, finds_no_error_and_no_warning_in_what_we_write) {
   strip.parts[0].mesh.positions = Points::Random(5, 3);
   write(strip, "points");
   write(carried(), "carried");
+  EXPECT_EQ(issues_of(packages_, files_), "");
+}
+
+TEST_F(GltfValidator, finds_no_error_and_no_warning_in_avatars) {
+  VrmMeta meta;
+  meta.name = "a";
+  meta.authors = {"b"};
+  const VrmPlan plan = plan_vrm(test::full_character(), meta);
+  files_.push_back(folder_ / "a.vrm");
+  write_vrm(plan.character, plan.avatar, files_.back());
   EXPECT_EQ(issues_of(packages_, files_), "");
 }
 
