@@ -34,9 +34,9 @@ class propagate : public ::testing::Test {
     slider.stops = {{1, static_cast<int>(worked.shapes.size()) - 1}};
     worked.sliders.push_back(slider);
     save(worked, folder / "worked.glb");
-    // The source: a stronger smile, a frown less.
+    // The source: a weaker smile.
     Character after = load(folder / "human.glb");
-    after.shapes[static_cast<std::size_t>(find_shape(after, "mouthSmileLeft"))].parts[0].deltas *= 1.5f;
+    after.shapes[static_cast<std::size_t>(find_shape(after, "mouthSmileLeft"))].parts[0].deltas *= 0.95f;
     save(after, folder / "after.glb");
   }
   int transfer(const std::string& source, const std::string& output) {
