@@ -14,6 +14,7 @@
 #include "mien/evaluate/detail/check_pose.h"
 #include "mien/evaluate/detail/compile_blocks.h"
 #include "mien/evaluate/detail/frame.h"
+#include "mien/evaluate/detail/moving_objects.h"
 
 namespace mien {
 
@@ -26,7 +27,10 @@ using detail::lane_count;
 using detail::PartBlocks;
 
 struct Evaluator::Compiled : detail::CompiledCharacter {
-  using CompiledCharacter::CompiledCharacter;
+  Compiled(const Character& character, const EvaluatorOptions& options)
+      : CompiledCharacter(character, options.vertices, options.precision == DeltaPrecision::compact),
+        objects(character, options.vertices) {}
+  detail::MovingObjects objects;
   InstructionSet instructions = InstructionSet::plain;
   const detail::Kernel* kernel = nullptr;
 };
@@ -124,8 +128,7 @@ Evaluator::Evaluator(const Character& character, const EvaluatorOptions& options
   if (!is_supported(options.instructions))
     throw invalid_input("instruction set",
                         std::string(name_of(options.instructions)) + " does not run on this machine", "best");
-  auto compiled =
-      std::make_shared<Compiled>(character, options.vertices, options.precision == DeltaPrecision::compact);
+  auto compiled = std::make_shared<Compiled>(character, options);
   compiled->instructions =
       options.instructions == InstructionSet::best ? best_supported() : options.instructions;
   compiled->kernel = kernel_of(compiled->instructions);
@@ -270,6 +273,10 @@ std::size_t Evaluator::run(const Pose& pose, float* blocks, float* rows, bool on
   if (can_keep) std::swap(state.now, state.before);
   state.has_before = false;  // should the pose be refused
   state.now.set(compiled, pose);
+  if (compiled.objects.move(pose)) {
+    compiled.objects.evaluate(pose, compiled.blocks.row, blocks, rows);
+    return compiled.blocks.count();
+  }
   if (can_keep) {
     for (std::size_t c = 0; c < state.moved.size(); ++c)
       state.moved[c] = state.now.has_moved(state.before, c);
@@ -372,7 +379,10 @@ void Evaluator::bake_groups(std::span<const Pose> poses, float* frames, bool as_
         if (as_rows)
           compiled.kernel->copy_rows(group.lanes[f], compiled.blocks.lane_of_row.data(), vertex_count(),
                                      frame);
-        if (group.frames[f].has_twist())
+        if (compiled.objects.move(poses[first + f]))
+          compiled.objects.evaluate(poses[first + f], compiled.blocks.row, as_rows ? nullptr : frame,
+                                    as_rows ? frame : nullptr);
+        else if (group.frames[f].has_twist())
           run_twisted(compiled, state, group.frames[f], as_rows ? nullptr : frame, as_rows ? frame : nullptr);
       }
     }
