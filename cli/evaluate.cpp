@@ -61,6 +61,7 @@ std::vector<Pose> poses_of(const Character& character, const Arguments& argument
   if (!arguments.clip.empty()) return clip_poses(character, arguments);
   RigPose rig = rest_rig_pose(character);
   rig.sliders = read_weights(arguments.weights, character);
+  rig.wires = read_wire_moves(arguments.weights, character);
   return {pose_of(character, rig)};
 }
 

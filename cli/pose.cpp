@@ -35,6 +35,7 @@ SolvePinsOptions options_of(const Character& character, const Arguments& argumen
   options.stiffness = set.stiffness;
   for (const NamedLimits& limits : set.limits)
     options.limits.push_back({limits.slider, limits.low, limits.high});
+  for (const int wire : set.wires) options.wires.push_back({wire});
   for (const NamedJoint& joint : set.joints)
     options.joints.push_back(
         {joint.node, joint.turn_low, joint.turn_high, joint.shift_low, joint.shift_high});
@@ -48,13 +49,28 @@ SolvePinsOptions options_of(const Character& character, const Arguments& argumen
   return options;
 }
 
+/// Wires that the drag added a move to.
+std::vector<int> moved_wires(const RigPose& start, const SolvePinsResult& result) {
+  std::vector<int> wires;
+  for (std::size_t m = start.wires.size(); m < result.pose.wires.size(); ++m)
+    wires.push_back(result.pose.wires[m].wire);
+  return wires;
+}
+
 json as_json(const Character& character, const SolvePinsResult& result, const RigPose& start) {
   json moved = json::object();
   for (const int s : result.moved)
     moved[character.sliders[s].name] = {{"from", start.sliders.values[s]},
                                         {"to", result.pose.sliders.values[s]}};
-  return {{"misses", result.misses},       {"moved", moved},          {"hard_met", result.hard_met},
-          {"converged", result.converged}, {"solves", result.solves}, {"objective", result.objective}};
+  json wires = json::array();
+  for (const int w : moved_wires(start, result)) wires.push_back(character.wires[w].name);
+  return {{"misses", result.misses},
+          {"moved", moved},
+          {"wires", wires},
+          {"hard_met", result.hard_met},
+          {"converged", result.converged},
+          {"solves", result.solves},
+          {"objective", result.objective}};
 }
 
 std::string as_text(const Character& character, const SolvePinsResult& result, const RigPose& start) {
@@ -65,12 +81,13 @@ std::string as_text(const Character& character, const SolvePinsResult& result, c
   for (const int s : result.moved)
     text += fmt::format("  {:<28} {:>8.4f} -> {:.4f}\n", character.sliders[s].name, start.sliders.values[s],
                         result.pose.sliders.values[s]);
+  for (const int w : moved_wires(start, result)) text += "  wire " + character.wires[w].name + " moves\n";
   if (result.moved.empty()) text += "  no slider moves\n";
   return text;
 }
 
 void write_pose(const Character& character, const RigPose& pose, const std::filesystem::path& output) {
-  if (output.extension() == ".json") return write_weights(pose.sliders, character, output);
+  if (output.extension() == ".json") return write_weights(pose.sliders, character, output, pose.wires);
   save(posed_character(character, pose_of(character, pose)), output);
 }
 
@@ -82,7 +99,10 @@ void run(const Arguments& arguments, const Common& common) {
   const Character character = load(arguments.character);
   const PinSet set = read_pins(arguments.pins, character);
   RigPose start = rest_rig_pose(character);
-  if (!arguments.start.empty()) start.sliders = read_weights(arguments.start, character);
+  if (!arguments.start.empty()) {
+    start.sliders = read_weights(arguments.start, character);
+    start.wires = read_wire_moves(arguments.start, character);
+  }
   const auto begin = std::chrono::steady_clock::now();
   const SolvePinsResult result = [&] {
     try {
@@ -109,12 +129,15 @@ void add_pose(CLI::App& app, Common& common) {
       "Example: mien pose head.glb --pins pins.json --start smile.json -o pulled.json\n"
       "PINS: {\"pins\": [{\"at\": {\"vertex\": 17}, \"move\": [0, 0.01, 0], \"axes\": \"xyz\", \"weight\": "
       "1, \"hard\": false}],\n"
-      "       \"locked\": [\"eyeBlinkLeft\"], \"limits\": {\"jawOpen\": [0, 1.2]}}");
+      "       \"locked\": [\"eyeBlinkLeft\"], \"limits\": {\"jawOpen\": [0, 1.2]}, \"wires\": "
+      "[\"lipUpperOuter\"]}");
   command->add_option("CHARACTER", arguments->character, "The character (.glb, .gltf)")->required();
   command->add_option("--pins", arguments->pins, "What is pulled where (.json)")->required();
   command->add_option("--start", arguments->start,
-                      "Slider values to start from (.json) (default: the rest pose)");
-  command->add_option("-o,--output", arguments->output, ".json: slider values; .obj, .glb: the posed face")
+                      "Slider values and moves of wires to start from (.json) (default: the rest pose)");
+  command
+      ->add_option("-o,--output", arguments->output,
+                   ".json: slider values and moves of wires; .obj, .glb: the posed face")
       ->required();
   SolvePinsOptions& options = arguments->options;
   command->add_option("--rho", options.rho, "How soft the pins are, without unit: alpha = rho |B|^2 / 3")

@@ -60,8 +60,10 @@ Pose pose_of(const Character& character, const Arguments& arguments) {
   Pose pose = rest_pose(character);
   if (!arguments.clip.empty())
     pose = sample_clip(character, clip_of_name(character, arguments.clip), arguments.time);
-  if (!arguments.weights.empty())
+  if (!arguments.weights.empty()) {
     pose.shape_weights = shape_weights(character, read_weights(arguments.weights, character));
+    pose.wires = read_wire_moves(arguments.weights, character);
+  }
   for (const std::string& shape : arguments.shapes) set_shape(character, shape, pose.shape_weights);
   return pose;
 }

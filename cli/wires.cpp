@@ -1,8 +1,10 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <filesystem>
 #include <memory>
+#include <span>
 
 #include "command.h"
 #include "mien/core/error.h"
@@ -21,9 +23,9 @@ namespace {
 namespace fs = std::filesystem;
 
 struct WiresArguments {
-  std::string character, curves, landmarks, output, reconstruct, report;
+  std::string character, curves, landmarks, output, write_curves, reconstruct, report;
   int count = 22, extra = 0;
-  bool keep_ranges = false;
+  bool keep_ranges = false, move_curves = false, varying = false;
   ExtractOptions options;
   SaveOptions save;
 };
@@ -41,16 +43,59 @@ std::vector<WireSketch> sketches_of(const WiresArguments& arguments, const Chara
   }
 }
 
+/// The wires as a curves file says them, their longest range among it.
+std::vector<WireSketch> sketches_of(const std::vector<Wire>& wires) {
+  std::vector<WireSketch> sketches;
+  for (const Wire& wire : wires)
+    sketches.push_back({wire.name, wire.feature, wire.points, wire.curve.control_count(),
+                        *std::max_element(wire.ranges.begin(), wire.ranges.end()), wire.turn_controls,
+                        wire.geodesic});
+  return sketches;
+}
+
+ImproveOptions improve_options(const WiresArguments& arguments) {
+  ImproveOptions options;
+  options.solver = arguments.options.solver;
+  options.varying = arguments.varying;
+  options.progress = arguments.options.progress;
+  return options;
+}
+
 /// Ranges that the file gives stay; the others are looked for.
 std::vector<Wire> with_ranges(const WiresArguments& arguments, const Character& character,
                               std::vector<Wire> wires, const std::vector<WireSketch>& sketches) {
-  ImproveOptions options;
-  options.solver = arguments.options.solver;
-  options.progress = arguments.options.progress;
+  ImproveOptions options = improve_options(arguments);
   for (const WireSketch& sketch : sketches)
     if (sketch.range > 0 && !arguments.curves.empty()) options.fixed.push_back(sketch.name);
   if (arguments.keep_ranges || options.fixed.size() == wires.size()) return wires;
   return improve_wires(character, wires, options).wires;
+}
+
+/// One more wire where these leave most over, with a range of its own.
+std::vector<Wire> with_another(const WiresArguments& arguments, const Character& character,
+                               std::vector<Wire> wires) {
+  const WireSketch sketch = propose_wire(character, extract_wires(character, wires, arguments.options));
+  ImproveOptions options = improve_options(arguments);
+  for (const Wire& wire : wires) options.fixed.push_back(wire.name);
+  wires.push_back(draw_wires(character, std::span(&sketch, 1)).front());
+  return arguments.keep_ranges ? wires : improve_wires(character, wires, options).wires;
+}
+
+/// The wires, drawn and improved as the arguments say. Sets what counts in the fits.
+std::vector<Wire> wires_of(WiresArguments& arguments, const Character& character) {
+  const std::vector<WireSketch> sketches = sketches_of(arguments, character);
+  std::vector<Wire> wires;
+  try {
+    wires = draw_wires(character, sketches);
+  } catch (const Error& error) {
+    throw error.in_file(arguments.curves.empty() ? arguments.character : arguments.curves);
+  }
+  arguments.options.solver.vertex_weights = outer_vertex_weights(character, wires);
+  if (arguments.move_curves) wires = move_curves(character, wires, improve_options(arguments)).wires;
+  wires = with_ranges(arguments, character, std::move(wires), sketches);
+  for (int added = 0; added < arguments.extra; ++added)
+    wires = with_another(arguments, character, std::move(wires));
+  return wires;
 }
 
 void make_folder(const fs::path& folder) {
@@ -138,19 +183,7 @@ void run(WiresArguments& arguments, const Common& common) {
     throw invalid_input("shapes", "are none", "a character with shapes").in_file(arguments.character);
   arguments.options.progress = progress_bar(common);
   const auto start = std::chrono::steady_clock::now();
-  std::vector<WireSketch> sketches = sketches_of(arguments, character);
-  std::vector<Wire> wires;
-  try {
-    wires = draw_wires(character, sketches);
-  } catch (const Error& error) {
-    throw error.in_file(arguments.curves.empty() ? arguments.character : arguments.curves);
-  }
-  arguments.options.solver.vertex_weights = outer_vertex_weights(character, wires);
-  for (int added = 0; added < arguments.extra; ++added) {
-    sketches.push_back(propose_wire(character, extract_wires(character, wires, arguments.options)));
-    wires = draw_wires(character, sketches);
-  }
-  wires = with_ranges(arguments, character, std::move(wires), sketches);
+  const std::vector<Wire> wires = wires_of(arguments, character);
   const double range_seconds = seconds_since(start);
   const ExtractResult result = extract_wires(character, wires, arguments.options);
   const WireCompression compression = wire_compression(character, result);
@@ -160,6 +193,7 @@ void run(WiresArguments& arguments, const Common& common) {
                              range_seconds, arguments.options.progress});
   if (!arguments.report.empty()) make_folder(arguments.report);
   save(result.character, arguments.output, arguments.save);
+  if (!arguments.write_curves.empty()) write_curves(sketches_of(wires), character, arguments.write_curves);
   if (!arguments.reconstruct.empty()) write_rebuilt(character, result, arguments.reconstruct);
   const nlohmann::json json = as_json(result, compression, range_seconds);
   if (!arguments.report.empty()) {
@@ -188,6 +222,10 @@ void add_wires(CLI::App& app, Common& common) {
       ->check(CLI::Range(0, 100))
       ->capture_default_str();
   command->add_flag(
+      "--move-curves", arguments->move_curves,
+      "First move the curves to where they rebuild the shapes best, by at most a quarter of their range");
+  command->add_flag("--varying", arguments->varying, "Let ranges vary along the curves: four values each");
+  command->add_flag(
       "--keep-ranges", arguments->keep_ranges,
       "Take each wire's length as its range where none is given; otherwise ranges are looked for");
   command
@@ -198,7 +236,14 @@ void add_wires(CLI::App& app, Common& common) {
       ->add_option("--residual", arguments->options.residual,
                    "Keep what the wires leave over where it exceeds this part of the face's box")
       ->capture_default_str();
+  command
+      ->add_option("--residual-vertices", arguments->options.residual_vertices,
+                   "And on at most this share of the vertices, a shape on average: where it counts most")
+      ->capture_default_str();
   command->add_flag("--exact", arguments->options.exact, "Keep the shapes as they are beside their wires");
+  command->add_option(
+      "--write-curves", arguments->write_curves,
+      "A curves file of these wires with the ranges that were found, to edit and give to --curves");
   command->add_option("--reconstruct", arguments->reconstruct,
                       "A folder for OBJ files: each shape as its wires alone rebuild it");
   command->add_option("--report", arguments->report,

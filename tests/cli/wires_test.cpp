@@ -44,6 +44,39 @@ TEST(WiresCommand, FindsWiresBlendsThemAndRefusesOddFiles) {
   EXPECT_TRUE(std::filesystem::exists(folder / "blend.glb"));
 }
 
+TEST(WiresCommand, PinsMoveTheWiresThatTheyName) {
+  const Folder folder;
+  ASSERT_EQ(run_mien(folder, "sample human --quiet -o" + quoted(folder.path().string())).exit_code, 0);
+  const std::string wires = folder / "wires.glb", out = folder / "pulled.json";
+  ASSERT_EQ(run_mien(folder, "wires --count 15 --keep-ranges --exact --quiet" + quoted(folder / "human.glb") +
+                                 "-o" + quoted(wires) + "--write-curves" + quoted(folder / "curves.json"))
+                .exit_code,
+            0);
+  const auto curves = nlohmann::json::parse(text_of(folder / "curves.json"));
+  ASSERT_EQ(curves["curves"].size(), 15u);
+  const auto point = curves["curves"]["brow_L"]["points"][2];
+  const auto pull = [&](const std::string& names) {
+    const nlohmann::json pins = {{"pins", {{{"at", point}, {"move", {0, 0.03, 0}}}}},
+                                 {"wires", nlohmann::json::parse(names)}};
+    folder.write("pins.json", pins.dump());
+    return run_mien(
+        folder, "pose --json" + quoted(wires) + "--pins" + quoted(folder / "pins.json") + "-o" + quoted(out));
+  };
+  EXPECT_THAT(pull(R"(["brow"])").err,
+              HasSubstr("wires: wire brow: does not exist; name one of the 15 wires, perhaps brow_"));
+  EXPECT_FALSE(std::filesystem::exists(out));
+  const Ran still = pull("[]"), pulled = pull(R"(["brow_L"])");
+  ASSERT_EQ(pulled.exit_code, 0) << pulled.err;
+  EXPECT_EQ(nlohmann::json::parse(pulled.out)["wires"], nlohmann::json({"brow_L"}));
+  EXPECT_LT(nlohmann::json::parse(pulled.out)["misses"][0].get<double>(), 0.001);
+  const auto written = nlohmann::json::parse(text_of(folder / "pulled.json"));
+  EXPECT_EQ(written["wires"]["brow_L"]["controls"].size(), 10u);
+  EXPECT_EQ(run_mien(folder, "render" + quoted(wires) + "--size 64,64 --weights" + quoted(out) + "-o" +
+                                 quoted(folder / "pulled.png"))
+                .exit_code,
+            0);
+}
+
 TEST(WiresCommand, RefusesOddCurves) {
   const Folder folder;
   ASSERT_EQ(run_mien(folder, "sample human --quiet -o" + quoted(folder.path().string())).exit_code, 0);

@@ -142,6 +142,52 @@ TEST(read_weights, missing_names_weigh_nothing_and_weights_come_back) {
   EXPECT_EQ(read_weights(folder / "again.json", c).values, weights.values);
 }
 
+Character with_a_wire() {
+  Character c = small_character();
+  Wire wire;
+  wire.name = "lip";
+  wire.curve.knots = clamped_knots(4);
+  wire.curve.controls = PointsD::Zero(4, 3);
+  wire.curve.controls.col(0) << 0, 1, 2, 3;
+  wire.ranges = {1};
+  c.wires.push_back(wire);
+  return c;
+}
+
+TEST(read_weights, moves_of_wires_add_up_and_come_back) {
+  const Character c = with_a_wire();
+  const Folder folder;
+  WireMove move;
+  move.controls = PointsD::Constant(4, 3, 0.25);
+  WireMove more = move;
+  more.scale = 0.5;
+  more.turns = PointsD::Constant(4, 3, -0.125);
+  write_weights(SliderValues(c.sliders.size()), c, folder / "w.json", {move, more});
+  const std::vector<WireMove> read = read_wire_moves(folder / "w.json", c);
+  ASSERT_EQ(read.size(), 1u);
+  EXPECT_EQ(read[0].controls, 2 * move.controls);
+  EXPECT_EQ(read[0].scale, 0.5);
+  EXPECT_EQ(read[0].turns, more.turns);
+  EXPECT_EQ(read_weights(folder / "w.json", c).values.cwiseAbs().sum(), 0);
+  EXPECT_TRUE(read_wire_moves(folder.write("none.json", R"({"weights": {}})"), c).empty());
+}
+
+TEST(read_weights, odd_moves_of_wires_are_named) {
+  const Character c = with_a_wire();
+  const Folder folder;
+  const std::pair<const char*, const char*> cases[] = {
+      {R"({"wires": {"lips": {}}})",
+       "w.json: wire lips: does not exist; name one of the 1 wires, perhaps lip"},
+      {R"({"wires": {"lip": {"controls": [[0, 0, 0]]}}})",
+       "w.json: wires.lip.controls: is no list of points; give 4 times [x, y, z]"},
+      {R"({"wires": {"lip": {"turns": [[0, 0, 0], [0, 0], [0, 0, 0], [0, 0, 0]]}}})",
+       "w.json: wires.lip.turns: is no list of points; give 4 times [x, y, z]"}};
+  for (const auto& [text, expected] : cases) {
+    const auto path = folder.write("w.json", text);
+    EXPECT_THAT(error_of([&] { read_wire_moves(path, c); }), ::testing::HasSubstr(expected));
+  }
+}
+
 class Assemble : public testing::Test {
  protected:
   const std::string triangle_ = "f 1 2 3\n";

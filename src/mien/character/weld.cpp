@@ -4,6 +4,7 @@
 #include <array>
 #include <functional>
 #include <numeric>
+#include <span>
 #include <string>
 #include <utility>
 
@@ -38,41 +39,60 @@ struct OpenEdge {
   int position_a, position_b, a, b, piece;
 };
 
-/// One number for each distinct position.
-std::vector<int> number_positions(const Points& positions) {
+/// One number for each distinct position among `vertices`, -1 elsewhere.
+std::vector<int> number_positions(const Points& positions, std::vector<int> vertices) {
   const auto row = [&](int v) {  // adding zero turns -0 into +0
     return std::array<float, 3>{positions(v, 0) + 0.f, positions(v, 1) + 0.f, positions(v, 2) + 0.f};
   };
-  std::vector<int> order(positions.rows()), number(positions.rows());
-  std::iota(order.begin(), order.end(), 0);
-  std::sort(order.begin(), order.end(), [&](int a, int b) {
+  std::vector<int> number(static_cast<std::size_t>(positions.rows()), -1);
+  std::sort(vertices.begin(), vertices.end(), [&](int a, int b) {
     const auto row_a = row(a), row_b = row(b);
     return row_a != row_b ? row_a < row_b : a < b;
   });
   int next = -1;
-  for (std::size_t i = 0; i < order.size(); ++i) {
-    if (i == 0 || row(order[i]) != row(order[i - 1])) ++next;
-    number[order[i]] = next;
+  for (std::size_t i = 0; i < vertices.size(); ++i) {
+    if (i == 0 || row(vertices[i]) != row(vertices[i - 1])) ++next;
+    number[vertices[i]] = next;
   }
   return number;
 }
 
-std::vector<OpenEdge> open_edges(const Mesh& mesh, const std::vector<int>& position, DisjointSets& pieces) {
-  std::vector<std::pair<int, int>> edges;
-  edges.reserve(mesh.faces.corner_count());
-  for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
-    const auto face = mesh.faces[f];
-    for (std::size_t c = 0; c < face.size(); ++c) {
-      const int a = face[c], b = face[(c + 1) % face.size()];
-      edges.emplace_back(a, b);
-      pieces.join(a, b);
+/// Edges that no face runs back along, ascending by their vertices; their ends lie at different positions.
+std::vector<OpenEdge> open_edges(const Mesh& mesh, DisjointSets& pieces) {
+  const std::size_t count = mesh.vertex_count();
+  std::vector<int> offsets(count + 1, 0), heads(mesh.faces.corner_count());
+  const auto each_edge = [&](const auto& use) {
+    for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
+      const auto face = mesh.faces[f];
+      for (std::size_t c = 0; c < face.size(); ++c) use(face[c], face[(c + 1) % face.size()]);
+    }
+  };
+  each_edge([&](int a, int b) {
+    ++offsets[a + 1];
+    pieces.join(a, b);
+  });
+  std::partial_sum(offsets.begin(), offsets.end(), offsets.begin());
+  std::vector<int> next(offsets.begin(), offsets.end() - 1);
+  each_edge([&](int a, int b) { heads[next[a]++] = b; });
+  const auto from = [&](int a) { return std::span(heads).subspan(offsets[a], offsets[a + 1] - offsets[a]); };
+  std::vector<OpenEdge> open;
+  std::vector<int> ends;
+  for (int a = 0; a < static_cast<int>(count); ++a) {
+    std::sort(from(a).begin(), from(a).end());
+    for (const int b : from(a)) {
+      if (std::find(from(b).begin(), from(b).end(), a) != from(b).end()) continue;
+      open.push_back({0, 0, a, b, 0});
+      ends.insert(ends.end(), {a, b});
     }
   }
-  std::sort(edges.begin(), edges.end());
-  std::vector<OpenEdge> open;
-  for (const auto& [a, b] : edges)
-    if (position[a] != position[b] && !std::binary_search(edges.begin(), edges.end(), std::pair(b, a)))
-      open.push_back({position[a], position[b], a, b, 0});
+  std::sort(ends.begin(), ends.end());
+  ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
+  const std::vector<int> position = number_positions(mesh.positions, std::move(ends));
+  for (OpenEdge& edge : open) {
+    edge.position_a = position[edge.a];
+    edge.position_b = position[edge.b];
+  }
+  std::erase_if(open, [](const OpenEdge& edge) { return edge.position_a == edge.position_b; });
   return open;
 }
 
@@ -126,9 +146,8 @@ Weld number_welded(std::size_t count, DisjointSets& welded) {
 Weld weld_where(const Mesh& mesh, const MayJoin& may_join) {
   check_corners(mesh);
   const std::size_t count = mesh.vertex_count();
-  const std::vector<int> position = number_positions(mesh.positions);
   DisjointSets welded(count), pieces(count);
-  std::vector<OpenEdge> ambiguous = join_opposite(open_edges(mesh, position, pieces), welded, may_join);
+  std::vector<OpenEdge> ambiguous = join_opposite(open_edges(mesh, pieces), welded, may_join);
   if (!ambiguous.empty()) {
     for (int v = 0; v < static_cast<int>(count); ++v) pieces.join(v, welded.root(v));
     for (OpenEdge& edge : ambiguous) edge.piece = pieces.root(edge.a);
