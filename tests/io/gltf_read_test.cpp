@@ -36,11 +36,15 @@ TEST(read_gltf, triangles_strips_fans_and_no_indices_give_faces) {
   EXPECT_THAT(read(gltf).parts.at(0).mesh.faces.corners(), ElementsAre(0, 1, 2, 0, 2, 3));
 }
 
-TEST(read_gltf, lines_and_points_are_no_part) {
+TEST(read_gltf, lines_make_a_part_without_faces) {
   GltfText gltf = quad();
   gltf.primitive()["mode"] = 1;
-  EXPECT_TRUE(read(gltf).parts.empty());
-  EXPECT_EQ(read(gltf).nodes.size(), 1u);
+  const Character character = read(gltf);
+  ASSERT_EQ(character.parts.size(), 1u);
+  EXPECT_TRUE(character.parts[0].mesh.faces.empty());
+  ASSERT_EQ(character.parts[0].mesh.loose.size(), 1u);
+  EXPECT_TRUE(character.parts[0].mesh.loose[0].lines);
+  EXPECT_EQ(character.nodes.size(), 1u);
 }
 
 TEST(read_gltf, strides_step_over_what_lies_between) {
