@@ -50,8 +50,8 @@ TEST(ObjectsCommand, AddsListsAndDrawsObjects) {
   EXPECT_THAT(run_mien(folder, "inspect" + quoted(folder / "out.glb")).out,
               HasSubstr("line: curve degree 1, 2 control points; 3 vertices of"));
   EXPECT_EQ(run_mien(folder, "objects" + quoted(folder / "out.glb")).exit_code, 0);
-  const Ran drawn = run_mien(folder, "render --objects --size 64,64" + quoted(folder / "out.glb") + "-o" +
-                                         quoted(folder / "out.png"));
+  const Ran drawn = run_mien(folder, "render --objects" + quoted(folder / "out.glb") + "-o" +
+                                         quoted(folder / "out.png") + "--size 64,64");
   EXPECT_EQ(drawn.exit_code, 0) << drawn.err;
 }
 

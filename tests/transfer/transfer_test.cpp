@@ -126,10 +126,7 @@ TEST(transfer, shapes_alone_make_no_joints) {
   EXPECT_EQ(result.nodes.size(), made("cartoon").nodes.size());
   const Character& whole = transferred("human", "cartoon").character;
   double worst = 0;
-  for (std::size_t s = 0; s < 52; ++s) {
-    std::cerr << result.shapes[s].name << " " << difference(result, s, whole, s) << "\n";
-    worst = std::max(worst, difference(result, s, whole, s));
-  }
+  for (std::size_t s = 0; s < 52; ++s) worst = std::max(worst, difference(result, s, whole, s));
   EXPECT_LT(worst, 0.15);  // joints have a say in which places are trusted
 }
 

@@ -265,6 +265,7 @@ void PointEvaluator::Impl::carry_there(const Pose& pose, int node, int column, d
 }
 
 void PointEvaluator::Impl::set_carrier_slopes(const JointFreedom& freedom, const Pose& pose) {
+  if (sites.empty()) return;
   std::fill(is_below.begin(), is_below.end(), 1);  // any carrier may follow
   double size = std::max(shaped.cwiseAbs().maxCoeff(), placed.cwiseAbs().maxCoeff());
   if (size == 0) size = 1;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <tuple>
+#include <vector>
 
 namespace mien::detail {
 namespace {
@@ -139,11 +141,23 @@ bool ranges_alike(const std::array<ValueRange, 3>& a, const std::array<ValueRang
   });
 }
 
+auto target_of(const Channel& channel) {
+  return std::tuple(channel.property, channel.node, channel.shape, channel.part, channel.slider, channel.wire,
+                    channel.object, channel.control);
+}
+
+/// In an order of their own: files list channels by kind.
+std::vector<const Channel*> ordered_channels(const Clip& clip) {
+  std::vector<const Channel*> channels;
+  for (const Channel& channel : clip.channels) channels.push_back(&channel);
+  std::stable_sort(channels.begin(), channels.end(),
+                   [](const Channel* a, const Channel* b) { return target_of(*a) < target_of(*b); });
+  return channels;
+}
+
 bool channels_alike(const Channel& a, const Channel& b, const Alike& alike) {
-  const bool same_target = a.property == b.property && a.node == b.node && a.shape == b.shape &&
-                           a.part == b.part && a.slider == b.slider && a.wire == b.wire &&
-                           a.object == b.object && a.control == b.control;
-  return same_target && a.interpolation == b.interpolation && floats_alike(a.times, b.times, 1e-6) &&
+  return target_of(a) == target_of(b) && a.interpolation == b.interpolation &&
+         floats_alike(a.times, b.times, 1e-6) &&
          all_alike(a.values, b.values, [&](float x, float y) { return alike(x, y); });
 }
 
@@ -187,8 +201,8 @@ bool Alike::operator()(const Expression& a, const Expression& b) const {
 }
 
 bool Alike::operator()(const Clip& a, const Clip& b) const {
-  return all_alike(a.channels, b.channels,
-                   [&](const Channel& x, const Channel& y) { return channels_alike(x, y, *this); });
+  return all_alike(ordered_channels(a), ordered_channels(b),
+                   [&](const Channel* x, const Channel* y) { return channels_alike(*x, *y, *this); });
 }
 
 bool Alike::operator()(const SkinWeights& a, const SkinWeights& b) const {

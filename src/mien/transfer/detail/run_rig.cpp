@@ -92,10 +92,12 @@ bool Run::carries_nodes() const {
 void Run::place_joints() {
   space_ = space_map();
   result_ = bare_target(target_, target_pool_, !source_.skins.empty());
+  // Without joints to tell it by, a piece grows as the face does.
   for (PiecePlan& plan : plans_) {
+    if (source_.skins.empty()) break;
     const Eigen::Vector3d centre =
         target_pool_.positions(plan.vertices, Eigen::all).colwise().mean().transpose();
-    plan.growth = source_.skins.empty() ? 1 : space_.scale(registration_.similarity.inverse()(centre));
+    plan.growth = space_.scale(registration_.similarity.inverse()(centre));
   }
   if (!carries_nodes()) {
     skeleton_.node_of.assign(source_.nodes.size(), -1);
