@@ -33,7 +33,8 @@ void expect_same(const Points& wanted, const float* rows) {
 
 TEST(evaluator_objects, every_call_agrees_with_the_reference) {
   const Character character = rigged();
-  Evaluator evaluator(character), updated(character);  // an update goes on from its evaluator's own last frame
+  Evaluator evaluator(character),
+      updated(character);  // an update goes on from its evaluator's own last frame
   const std::vector<Pose> poses{posed(character, 0, 0), posed(character, 0.7, 0), posed(character, 0.7, 0.5),
                                 posed(character, 0, 0.5), posed(character, 0, 0)};
   std::vector<float> rows(3 * evaluator.vertex_count()), kept(rows.size()),

@@ -155,10 +155,17 @@ std::vector<const Channel*> ordered_channels(const Clip& clip) {
   return channels;
 }
 
+bool holds_lengths(const Channel& channel) {
+  using Property = Channel::Property;
+  return channel.property == Property::translation || channel.property == Property::wire_control ||
+         channel.property == Property::object_control;
+}
+
 bool channels_alike(const Channel& a, const Channel& b, const Alike& alike) {
   return target_of(a) == target_of(b) && a.interpolation == b.interpolation &&
-         floats_alike(a.times, b.times, 1e-6) &&
-         all_alike(a.values, b.values, [&](float x, float y) { return alike(x, y); });
+         floats_alike(a.times, b.times, 1e-6) && all_alike(a.values, b.values, [&](float x, float y) {
+           return alike(x, y) || (holds_lengths(a) && std::abs(x - y) <= alike.length);
+         });
 }
 
 }  // namespace
