@@ -141,17 +141,22 @@ bool ranges_alike(const std::array<ValueRange, 3>& a, const std::array<ValueRang
   });
 }
 
+/// What a channel animates, whatever the part: a shape's weight on several parts alike is one animation.
 auto target_of(const Channel& channel) {
-  return std::tuple(channel.property, channel.node, channel.shape, channel.part, channel.slider, channel.wire,
+  return std::tuple(channel.property, channel.node, channel.shape, channel.slider, channel.wire,
                     channel.object, channel.control);
 }
 
-/// In an order of their own: files list channels by kind.
+/// In an order of their own, each animation once: files list channels by kind, and a shape's weight part by part.
 std::vector<const Channel*> ordered_channels(const Clip& clip) {
   std::vector<const Channel*> channels;
   for (const Channel& channel : clip.channels) channels.push_back(&channel);
   std::stable_sort(channels.begin(), channels.end(),
                    [](const Channel* a, const Channel* b) { return target_of(*a) < target_of(*b); });
+  const auto same = [](const Channel* a, const Channel* b) {
+    return target_of(*a) == target_of(*b) && a->times == b->times && a->values == b->values;
+  };
+  channels.erase(std::unique(channels.begin(), channels.end(), same), channels.end());
   return channels;
 }
 
