@@ -59,17 +59,19 @@ BakeSurface bake_surface(const Character& character, const std::vector<Points>& 
   BakeSurface surface;
   std::vector<Eigen::RowVector3d> rows;
   std::vector<Eigen::Vector3i> triangles;
-  for (std::size_t p = 0; p < shown_part_count(character); ++p) {
+  std::vector<std::vector<int>> row_of(shown_part_count(character));
+  for (std::size_t p = 0; p < row_of.size(); ++p) {
     const Mesh& mesh = character.parts[p].mesh;
     const Weld weld = weld_seams(character, static_cast<int>(p));
     const std::vector<int> material = material_of_faces(mesh);
     const int first = static_cast<int>(rows.size());
     for (const int v : weld.representative) rows.push_back(positions[p].row(v).cast<double>());
+    for (const int row : weld.of) row_of[p].push_back(first + row);
     for (std::size_t f = 0; f < mesh.faces.size(); ++f)
       for (int c = 2; c < static_cast<int>(mesh.faces[f].size()); ++c) {
         const std::array<int, 3> corners{0, c - 1, c};
         Eigen::Vector3i triangle;
-        for (int k = 0; k < 3; ++k) triangle[k] = first + weld.of[at(mesh.faces[f][at(corners[at(k)])])];
+        for (int k = 0; k < 3; ++k) triangle[k] = row_of[p][at(mesh.faces[f][at(corners[at(k)])])];
         triangles.push_back(triangle);
         surface.part.push_back(static_cast<int>(p));
         surface.face.push_back(static_cast<int>(f));
@@ -88,6 +90,15 @@ BakeSurface bake_surface(const Character& character, const std::vector<Points>& 
     surface.piece.push_back(piece_of_vertex[at(surface.triangles(t, 0))]);
     surface.piece_count = std::max(surface.piece_count, surface.piece.back() + 1);
   }
+  surface.skin.assign(at(surface.piece_count), 0);
+  for (const Landmark& landmark : character.landmarks) {
+    if (at(landmark.at.part) >= row_of.size()) continue;
+    const Mesh& mesh = character.parts[at(landmark.at.part)].mesh;
+    const int vertex = landmark.at.face < 0 ? landmark.at.vertex
+                                            : mesh.faces[at(landmark.at.face)][at(landmark.at.corners[0])];
+    const int piece = piece_of_vertex[at(row_of[at(landmark.at.part)][at(vertex)])];
+    if (piece < surface.piece_count) surface.skin[at(piece)] = 1;
+  }
   return surface;
 }
 
@@ -104,7 +115,6 @@ PlaceFinder::PlaceFinder(const BakeSurface& guide, const BakeSurface& target)
   std::vector<std::vector<int>> triangles(at(target.piece_count));
   for (Eigen::Index t = 0; t < target.triangles.rows(); ++t)
     triangles[at(target.piece[at(t)])].push_back(static_cast<int>(t));
-  const std::vector<char> all(at(guide.piece_count), 1);
   const auto make = [&](const std::vector<char>& pieces) {
     std::unique_ptr<Part>& part = parts_[pieces];
     if (part) return part.get();
@@ -115,17 +125,29 @@ PlaceFinder::PlaceFinder(const BakeSurface& guide, const BakeSurface& target)
                                                  Triangles(guide.triangles(part->triangles, Eigen::all)));
     return part.get();
   };
-  make(all);
-  for (int piece = 0; piece < target.piece_count; ++piece)
-    if (!triangles[at(piece)].empty())
-      part_of_piece_[at(piece)] = make(pieces_under(piece, triangles[at(piece)]));
+  for (int piece = 0; piece < target.piece_count; ++piece) {
+    const std::vector<char> alike = pieces_like(piece);
+    if (triangles[at(piece)].empty() || std::find(alike.begin(), alike.end(), 1) == alike.end()) continue;
+    part_of_piece_[at(piece)] = make(pieces_under(*make(alike), triangles[at(piece)]));
+  }
 }
 
 PlaceFinder::~PlaceFinder() = default;
 
-/// The pieces of the guide that a piece of the target lies on.
-std::vector<char> PlaceFinder::pieces_under(int, const std::vector<int>& triangles) const {
-  const Part& all = *parts_.begin()->second;
+/// The guide's pieces of the same kind; all of them where one side has no landmarks to tell by.
+std::vector<char> PlaceFinder::pieces_like(int target_piece) const {
+  const auto knows = [](const std::vector<char>& skin) {
+    return std::find(skin.begin(), skin.end(), 1) != skin.end();
+  };
+  std::vector<char> alike(at(guide_.piece_count), 1);
+  if (knows(guide_.skin) && knows(target_.skin))
+    for (std::size_t p = 0; p < alike.size(); ++p)
+      alike[p] = guide_.skin[p] == target_.skin[at(target_piece)];
+  return alike;
+}
+
+/// Those of the candidates that a piece of the target lies on.
+std::vector<char> PlaceFinder::pieces_under(const Part& candidates, const std::vector<int>& triangles) const {
   std::vector<int> votes(at(guide_.piece_count), 0);
   const std::size_t step = std::max<std::size_t>(1, triangles.size() / most_asked);
   int asked = 0;
@@ -135,14 +157,15 @@ std::vector<char> PlaceFinder::pieces_under(int, const std::vector<int>& triangl
                                     target_.positions.row(corners[2]))
                                        .transpose() /
                                    3;
-    const Place place = find(all, middle, flat_normal(target_, triangles[i]));
+    const Place place = find(candidates, middle, flat_normal(target_, triangles[i]));
     if (place.triangle < 0) continue;
     ++votes[at(guide_.piece[at(place.triangle)])];
     ++asked;
   }
   std::vector<char> pieces(votes.size(), 0);
   for (std::size_t p = 0; p < votes.size(); ++p) pieces[p] = votes[p] > least_share * asked;
-  if (std::find(pieces.begin(), pieces.end(), 1) == pieces.end()) pieces.assign(pieces.size(), 1);
+  if (std::find(pieces.begin(), pieces.end(), 1) == pieces.end())
+    for (const int t : candidates.triangles) pieces[at(guide_.piece[at(t)])] = 1;
   return pieces;
 }
 
@@ -167,12 +190,14 @@ std::vector<Place> PlaceFinder::find(const TexelGrid& grid, const std::vector<in
     for (std::size_t pixel = begin; pixel < end; ++pixel) {
       if (grid.triangle[pixel] < 0) continue;
       const int t = triangle_of[at(grid.triangle[pixel])];
+      const Part* part = part_of_piece_[at(target_.piece[at(t)])];
+      if (!part) continue;
       Eigen::Vector3d position = Eigen::Vector3d::Zero(), normal = Eigen::Vector3d::Zero();
       for (int k = 0; k < 3; ++k) {
         position += grid.barycentric[pixel][k] * target_.positions.row(target_.triangles(t, k)).transpose();
         normal += grid.barycentric[pixel][k] * target_.normals.row(target_.triangles(t, k)).transpose();
       }
-      places[pixel] = find(*part_of_piece_[at(target_.piece[at(t)])], position, normal);
+      places[pixel] = find(*part, position, normal);
     }
   });
   return places;

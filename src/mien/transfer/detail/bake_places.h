@@ -22,6 +22,7 @@ struct BakeSurface {
   std::vector<std::array<int, 3>> corners;  ///< #T: which corners of the face
   std::vector<int> piece;                   ///< #T: connected piece
   int piece_count = 0;
+  std::vector<char> skin;  ///< by piece: one of the character's landmarks lies on it
 };
 ///   positions  model space, one #V x 3 a shown part
 BakeSurface bake_surface(const Character& character, const std::vector<Points>& positions);
@@ -37,7 +38,8 @@ struct Place {
 
 class PlaceFinder {
  public:
-  /// `guide`: the source's surface where it lies on the target.
+  /// `guide`: the source's surface where it lies on the target. Skin finds its place on skin, and what is none (eyes, brows) on what
+  /// is none: lids lie closer to a large eye than the source's eye does.
   PlaceFinder(const BakeSurface& guide, const BakeSurface& target);
   ~PlaceFinder();
   /// A place for each covered pixel; `triangle_of` are the target's triangles that the grid was drawn with.
@@ -45,9 +47,9 @@ class PlaceFinder {
 
  private:
   struct Part;
-  const Part& part_for(int target_piece);
   Place find(const Part& part, const Eigen::Vector3d& position, const Eigen::Vector3d& normal) const;
-  std::vector<char> pieces_under(int target_piece, const std::vector<int>& triangles) const;
+  std::vector<char> pieces_under(const Part& candidates, const std::vector<int>& triangles) const;
+  std::vector<char> pieces_like(int target_piece) const;
   const BakeSurface& guide_;
   const BakeSurface& target_;
   double reach_;
