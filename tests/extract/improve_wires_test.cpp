@@ -82,8 +82,8 @@ TEST(MoveCurves, LeavesLessAndKeepsTwinsMirrored) {
                              right =
                                  named(moved.wires, std::string(name) + "_R").curve.controls.colwise().mean();
     // One side moves after the other has: mirrored but for what the second finds changed by the first.
-    EXPECT_NEAR(left.x(), -right.x(), 0.015 * size) << name;
-    EXPECT_NEAR(left.y(), right.y(), 0.015 * size) << name;
+    EXPECT_NEAR(left.x(), -right.x(), 0.01 * size) << name;
+    EXPECT_NEAR(left.y(), right.y(), 0.01 * size) << name;
   }
 }
 
