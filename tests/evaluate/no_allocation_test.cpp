@@ -32,10 +32,10 @@ namespace {
 
 TEST(NoAllocation, EvaluatorAndPointEvaluatorKeepTheirMemory) {
   for (unsigned seed = 0; seed < 6; ++seed) {
-    Character character = test::wired_rig(seed);
+    Character character = test::objects_rig(seed);
     if (seed > 3) character.constraints = test::constrained_rig(seed).constraints;
     std::vector<Pose> poses;
-    for (unsigned f = 0; f < 10; ++f) poses.push_back(test::wired_pose(character, 10 * seed + f));
+    for (unsigned f = 0; f < 10; ++f) poses.push_back(test::objects_pose(character, 10 * seed + f));
     Evaluator evaluator(character);
     PointEvaluator points(character,
                           {{0, -1, 3, {1, 0, 0}, {0, 1, 2}}, {1, 0, -1, {0.2, 0.3, 0.5}, {0, 1, 2}}});

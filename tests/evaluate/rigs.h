@@ -193,4 +193,72 @@ inline Character constrained_rig(unsigned seed) {
   return character;
 }
 
+/// An object without control points' skin or bindings.
+inline InfluenceObject random_object(Random& random, std::string name, InfluenceForm form, int controls) {
+  InfluenceObject object;
+  object.name = std::move(name);
+  object.form = std::move(form);
+  object.controls = random_rows(random, controls, 1);
+  return object;
+}
+
+/// Binds an object to some vertices of every part.
+inline void bind_anyhow(Random& random, const Character& character, bool is_frame, InfluenceObject& object) {
+  for (int p = 0; p < static_cast<int>(character.parts.size()); ++p) {
+    InfluenceBinding binding;
+    binding.part = p;
+    if (!is_frame) binding.offsets.push_back(0);
+    for (int v = 0; v < static_cast<int>(character.parts[p].mesh.vertex_count()); ++v) {
+      if (random.index(5) > 1) continue;
+      binding.vertices.push_back(v);
+      binding.weights.push_back(static_cast<float>(random.number(0.1, 1)));
+      if (is_frame) continue;
+      const float share = static_cast<float>(random.number(0, 1));
+      const int first = random.index(static_cast<int>(object.controls.rows()) - 1);
+      binding.controls.insert(binding.controls.end(), {first, first + 1});
+      binding.coefficients.insert(binding.coefficients.end(), {share, 1 - share});
+      binding.offsets.push_back(static_cast<int>(binding.controls.size()));
+    }
+    object.bindings.push_back(binding);
+  }
+}
+
+/// The wired rig with influence objects: a curve on joints, a wrap and a cluster on nodes, a locator in model space; two shapes move
+/// the first two and the cluster.
+inline Character objects_rig(unsigned seed) {
+  Character character = wired_rig(seed);
+  Random random(seed + 9000);
+  InfluenceObject curve = random_object(random, "curve", NurbsCurve{1, {0, 0, 0.5, 1, 1}, {}}, 3);
+  curve.carrier = 1;
+  curve.skin = 0;
+  curve.skin_weights = random_skin_weights(random, 3, 6);
+  WrapMesh mesh;
+  mesh.faces.push_back({0, 1, 2, 3});
+  InfluenceObject wrap = random_object(random, "wrap", mesh, 4);
+  wrap.carrier = 0;
+  wrap.node = 2;
+  InfluenceObject cluster = random_object(random, "cluster", Cluster{}, 1);
+  cluster.carrier = 1;
+  cluster.node = 4;
+  InfluenceObject locator = random_object(random, "locator", Locator{}, 1);
+  locator.node = 5;
+  for (InfluenceObject* object : {&curve, &wrap, &cluster, &locator}) {
+    bind_anyhow(random, character, object == &cluster || object == &locator, *object);
+    character.objects.push_back(*object);
+  }
+  character.shapes[0].objects = {{0, random_rows(random, 3, 0.3)}, {2, random_rows(random, 1, 0.3)}};
+  character.shapes[3].objects = {{1, random_rows(random, 4, 0.3)}};
+  return character;
+}
+
+/// A random pose in which shapes, joints, wires and an animator move objects.
+inline Pose objects_pose(const Character& character, unsigned seed) {
+  Pose pose = wired_pose(character, seed);
+  Random random(seed + 11000);
+  for (const int o : {1, 3, 1})
+    pose.objects.push_back(
+        {o, random_rows(random, static_cast<int>(character.objects[o].controls.rows()), 0.2)});
+  return pose;
+}
+
 }  // namespace mien::test

@@ -118,40 +118,46 @@ Motion InfluenceField::motion_of(int index, int node, const std::vector<Eigen::M
   return motion.allFinite() ? Motion(motion.topRows<3>()) : identity();
 }
 
-std::vector<Motion> InfluenceField::motions_of(int index, const std::vector<Eigen::Matrix4d>& model) const {
+/// Writes what joints and node do to each control point.
+///   returns  false: they do nothing, and nothing is written
+bool InfluenceField::set_motions(int index, const std::vector<Eigen::Matrix4d>& model,
+                                 ObjectPose& pose) const {
   const Object& object = objects_[index];
   const bool has_joints = !object.joints.empty() && !object.skin_weights.empty();
   bool moved = has_moved(object.node, model) || has_moved(object.carrier, model);
   for (std::size_t j = 0; has_joints && !moved && j < object.joints.size(); ++j)
     moved = has_moved(object.joints[j], model);
-  if (!moved) return {};
+  if (!moved) return false;
   const Motion node = motion_of(index, object.node, model);
-  if (!has_joints && node == identity()) return {};
-  std::vector<Motion> motions(static_cast<std::size_t>(object.controls.rows()), node);
-  if (!has_joints) return motions;
-  std::vector<Motion> joints(object.joints.size());
-  for (std::size_t j = 0; j < joints.size(); ++j) joints[j] = motion_of(index, object.joints[j], model);
+  if (!has_joints && node == identity()) return false;
+  pose.motions.assign(static_cast<std::size_t>(object.controls.rows()), node);
+  if (!has_joints) return true;
+  pose.joints.resize(object.joints.size());
+  for (std::size_t j = 0; j < object.joints.size(); ++j)
+    pose.joints[j] = motion_of(index, object.joints[j], model);
   const SkinWeights& skin = object.skin_weights;
   Eigen::Matrix4d blend = Eigen::Matrix4d::Identity();
-  for (std::size_t c = 0; c < motions.size(); ++c) {
+  for (std::size_t c = 0; c < pose.motions.size(); ++c) {
     double total = 0;
     Motion sum = Motion::Zero();
     for (int i = skin.offsets[c]; i < skin.offsets[c + 1]; ++i) {
-      sum += static_cast<double>(skin.weights[i]) * joints[skin.joints[i]];
+      sum += static_cast<double>(skin.weights[i]) * pose.joints[skin.joints[i]];
       total += skin.weights[i];
     }
     if (!(total > 0)) continue;
     blend.topRows<3>() = sum / total;
-    motions[c] = node * blend;
+    pose.motions[c] = node * blend;
   }
-  if (std::all_of(motions.begin(), motions.end(), [](const Motion& m) { return m == identity(); })) return {};
-  return motions;
+  return !std::all_of(pose.motions.begin(), pose.motions.end(),
+                      [](const Motion& m) { return m == identity(); });
 }
 
-void InfluenceField::move_by(const ObjectMove& move, double share, std::vector<PointsD>& displaced) const {
+/// Adds to the displacements before joints and node count.
+void InfluenceField::move_by(const ObjectMove& move, double share, std::vector<ObjectPose>& poses) const {
   if (move.object < 0 || move.object >= object_count())
     throw invalid_input("object " + std::to_string(move.object), "does not exist",
-                        "one from 0 to " + std::to_string(object_count() - 1));
+                        objects_.empty() ? "no move: the character has no objects"
+                                         : "one from 0 to " + std::to_string(object_count() - 1));
   const Object& object = objects_[move.object];
   if (move.controls.rows() == 0) return;
   if (move.controls.rows() != object.controls.rows())
@@ -160,15 +166,38 @@ void InfluenceField::move_by(const ObjectMove& move, double share, std::vector<P
                         std::to_string(object.controls.rows()));
   if (!move.controls.allFinite())
     throw invalid_input("object " + object.name, "is moved by numbers that are not finite", "finite numbers");
-  PointsD& sum = displaced[move.object];
   if (share == 0 || move.controls.isZero(0)) return;
-  if (sum.rows() == 0) sum = PointsD::Zero(object.controls.rows(), 3);
-  sum += share * move.controls;
+  poses[move.object].displacements += share * move.controls;
+  poses[move.object].moves = true;
+}
+
+/// From what shapes and animator do to the control points, which `displacements` holds, to where they are. (M - 1) c + M d: small
+/// motions of a point far from the origin keep their digits.
+void InfluenceField::set_displacements(int index, bool is_carried, ObjectPose& pose) const {
+  const Object& object = objects_[index];
+  if (!is_carried) pose.motions.assign(static_cast<std::size_t>(object.controls.rows()), identity());
+  for (Eigen::Index c = 0; c < object.controls.rows(); ++c) {
+    const Motion& motion = pose.motions[static_cast<std::size_t>(c)];
+    const Eigen::Vector3d place = object.controls.row(c).transpose();
+    const Eigen::Vector3d shift = motion.leftCols<3>() * pose.displacements.row(c).transpose();
+    const Eigen::Matrix3d turn = motion.leftCols<3>() - Eigen::Matrix3d::Identity();
+    pose.displacements.row(c) = (turn * place + motion.col(3) + shift).transpose();
+    if (!object.is_frame) continue;
+    pose.frame = motion;
+    pose.frame.col(3) += shift;
+  }
 }
 
 std::vector<ObjectPose> InfluenceField::pose(const std::vector<Eigen::Matrix4d>& model,
                                              const ShapeWeights& weights,
                                              std::span<const ObjectMove> moves) const {
+  std::vector<ObjectPose> poses;
+  pose(model, weights, moves, poses);
+  return poses;
+}
+
+void InfluenceField::pose(const std::vector<Eigen::Matrix4d>& model, const ShapeWeights& weights,
+                          std::span<const ObjectMove> moves, std::vector<ObjectPose>& poses) const {
   if (model.size() != rest_.size())
     throw invalid_input("pose", "has " + std::to_string(model.size()) + " matrices",
                         std::to_string(rest_.size()) + ", one a node");
@@ -176,35 +205,20 @@ std::vector<ObjectPose> InfluenceField::pose(const std::vector<Eigen::Matrix4d>&
     throw invalid_input("shape weights", "number " + std::to_string(weights.values.size()),
                         std::to_string(shapes_.size()) + ", one a shape");
   if (!weights.values.allFinite()) throw invalid_input("shape weights", "are not finite", "finite numbers");
-  std::vector<PointsD> displaced(objects_.size());
+  poses.resize(objects_.size());
+  for (std::size_t o = 0; o < objects_.size(); ++o) {
+    poses[o].moves = false;
+    poses[o].displacements.setZero(objects_[o].controls.rows(), 3);
+  }
   for (std::size_t s = 0; s < shapes_.size(); ++s)
     for (const ObjectMove& move : shapes_[s])
-      move_by(move, weights.values[static_cast<Eigen::Index>(s)], displaced);
-  for (const ObjectMove& move : moves) move_by(move, 1, displaced);
-  std::vector<ObjectPose> poses(objects_.size());
+      move_by(move, weights.values[static_cast<Eigen::Index>(s)], poses);
+  for (const ObjectMove& move : moves) move_by(move, 1, poses);
   for (std::size_t o = 0; o < objects_.size(); ++o) {
-    const Object& object = objects_[o];
-    ObjectPose& pose = poses[o];
-    pose.motions = motions_of(static_cast<int>(o), model);
-    pose.moves = !pose.motions.empty() || displaced[o].rows() > 0;
-    if (!pose.moves) continue;
-    if (pose.motions.empty())
-      pose.motions.assign(static_cast<std::size_t>(object.controls.rows()), identity());
-    pose.displacements.resize(object.controls.rows(), 3);
-    for (Eigen::Index c = 0; c < object.controls.rows(); ++c) {
-      const Motion& motion = pose.motions[static_cast<std::size_t>(c)];
-      const Eigen::Vector3d place = object.controls.row(c).transpose();
-      const Eigen::Vector3d shift = displaced[o].rows() > 0 ? Eigen::Vector3d(displaced[o].row(c).transpose())
-                                                            : Eigen::Vector3d::Zero();
-      // (M - 1) c + M d: small motions of a point far from the origin keep their digits.
-      const Eigen::Matrix3d turn = motion.leftCols<3>() - Eigen::Matrix3d::Identity();
-      pose.displacements.row(c) = (turn * place + motion.col(3) + motion.leftCols<3>() * shift).transpose();
-      if (!object.is_frame) continue;
-      pose.frame = motion;
-      pose.frame.col(3) += motion.leftCols<3>() * shift;
-    }
+    const bool is_carried = set_motions(static_cast<int>(o), model, poses[o]);
+    poses[o].moves = poses[o].moves || is_carried;
+    if (poses[o].moves) set_displacements(static_cast<int>(o), is_carried, poses[o]);
   }
-  return poses;
 }
 
 PointsD InfluenceField::place(int index, const ObjectPose& pose,

@@ -14,10 +14,12 @@ using Motion = Eigen::Matrix<double, 3, 4>;
 
 /// One object in one pose, in model space, bind pose.
 struct ObjectPose {
-  bool moves = false;             ///< false: it rests, and the rest of this is empty
+  bool moves = false;             ///< false: it rests, and the rest of this says nothing
   std::vector<Motion> motions;    ///< #C: what joints and node do to each control point
   PointsD displacements;          ///< #C: where each control point is, less where it was bound
   Motion frame = Motion::Zero();  ///< of a cluster or locator: where it takes a point bound to it
+  std::vector<Motion>
+      joints;  ///< by joint of the object's skin, where one moves: its motion as the object sees it
 };
 
 /// The influence objects of a character, compiled. All count in the bind pose, on the shaped vertex x, before the skin moves it:
@@ -48,6 +50,10 @@ class InfluenceField {
   std::vector<ObjectPose> pose(const std::vector<Eigen::Matrix4d>& model, const ShapeWeights& weights,
                                std::span<const ObjectMove> moves) const;
 
+  /// The same into `poses`, without allocation once these have been through all objects.
+  void pose(const std::vector<Eigen::Matrix4d>& model, const ShapeWeights& weights,
+            std::span<const ObjectMove> moves, std::vector<ObjectPose>& poses) const;
+
   /// Adds what the objects do to `positions` (#V x 3, part space) of one part. Objects that rest change nothing, bit for bit.
   ///   throws  invalid_input: a part out of range, another number of objects than the character's, fewer positions than are bound
   ///   cost    about 10 ns an entry
@@ -58,6 +64,9 @@ class InfluenceField {
   PointsD place(int object, const ObjectPose& pose, const std::vector<Eigen::Matrix4d>& model) const;
 
   int object_count() const { return static_cast<int>(objects_.size()); }
+  /// Part `part`'s space to model space, as objects see it, and model space vectors back to its own space.
+  const Motion& to_model(int part) const { return to_model_[part]; }
+  const Eigen::Matrix3d& to_part(int part) const { return to_part_[part]; }
 
   /// The motion of a node since rest as this object sees it: R^-1 A_carrier^-1 A_node R. The identity for node -1, where neither has
   /// moved, and where the carrier is scaled to nothing.
@@ -69,8 +78,9 @@ class InfluenceField {
     int object = 0;
     InfluenceBinding binding;
   };
-  void move_by(const ObjectMove& move, double share, std::vector<PointsD>& displaced) const;
-  std::vector<Motion> motions_of(int object, const std::vector<Eigen::Matrix4d>& model) const;
+  void move_by(const ObjectMove& move, double share, std::vector<ObjectPose>& poses) const;
+  bool set_motions(int object, const std::vector<Eigen::Matrix4d>& model, ObjectPose& pose) const;
+  void set_displacements(int object, bool is_carried, ObjectPose& pose) const;
   bool has_moved(int node, const std::vector<Eigen::Matrix4d>& model) const;
 
   struct Object {

@@ -14,7 +14,6 @@
 #include "mien/evaluate/detail/check_pose.h"
 #include "mien/evaluate/detail/compile_blocks.h"
 #include "mien/evaluate/detail/frame.h"
-#include "mien/evaluate/detail/moving_objects.h"
 
 namespace mien {
 
@@ -28,9 +27,7 @@ using detail::PartBlocks;
 
 struct Evaluator::Compiled : detail::CompiledCharacter {
   Compiled(const Character& character, const EvaluatorOptions& options)
-      : CompiledCharacter(character, options.vertices, options.precision == DeltaPrecision::compact),
-        objects(character, options.vertices) {}
-  detail::MovingObjects objects;
+      : CompiledCharacter(character, options.vertices, options.precision == DeltaPrecision::compact) {}
   InstructionSet instructions = InstructionSet::plain;
   const detail::Kernel* kernel = nullptr;
 };
@@ -51,7 +48,8 @@ struct Evaluator::State {
       : now(compiled),
         before(now),
         moved(now.carrier_count()),
-        moved_wires(static_cast<std::size_t>(compiled.wire_rows.wire_count())) {
+        moved_wires(static_cast<std::size_t>(compiled.wire_rows.wire_count())),
+        moved_objects(static_cast<std::size_t>(compiled.object_rows.object_count())) {
     turned_weights.reserve(lane_count * most_joints(compiled.blocks));
     changed.reserve(compiled.blocks.words);
   }
@@ -60,6 +58,7 @@ struct Evaluator::State {
   std::vector<float> turned_weights;     // of one block
   std::vector<std::uint64_t> changed;    // bits of the shapes that changed on one part
   std::vector<char> moved, moved_wires;  // by carrier, by wire
+  std::vector<char> moved_objects;       // of one part
 };
 
 namespace {
@@ -85,6 +84,10 @@ BlockRun run_of(const detail::Blocks& blocks, std::size_t part) {
   run.end = blocks.parts[part].end;
   run.skin = blocks.parts[part].skin;
   run.to_part = blocks.wires.is_in_model_space[part] ? nullptr : blocks.wires.to_part[part].data();
+  if (!blocks.objects.is_in_model_space[part]) {
+    run.object_to_model = blocks.objects.to_model[part].data();
+    run.object_to_part = blocks.objects.to_part[part].data();
+  }
   run.row = blocks.row.data();
   run.in_a_row = blocks.in_a_row.data();
   return run;
@@ -211,8 +214,10 @@ class Evaluator::PartRun {
       if (state_.now.is_twisted(blocks_, b)) run_twisted(b);
   }
 
-  std::size_t changed(std::size_t part) {
+  std::size_t changed(const Compiled& compiled, std::size_t part) {
     state_.now.changed_shapes(state_.before, part, state_.changed);
+    for (std::size_t o = 0; o < state_.moved_objects.size(); ++o)
+      state_.moved_objects[o] = state_.now.has_object_moved(state_.before, compiled.object_rows, part, o);
     return where([this](std::size_t b) { return is_changed(b); });
   }
 
@@ -224,6 +229,8 @@ class Evaluator::PartRun {
       if (state_.moved[blocks_.joints[e]]) return true;
     for (std::size_t e = blocks_.wires.begin[b]; e < blocks_.wires.begin[b + 1]; ++e)
       if (state_.moved_wires[blocks_.wires.entries[e].wire]) return true;
+    for (std::size_t e = blocks_.objects.begin[b]; e < blocks_.objects.begin[b + 1]; ++e)
+      if (state_.moved_objects[blocks_.objects.entries[e].object]) return true;
     return false;
   }
 
@@ -273,10 +280,6 @@ std::size_t Evaluator::run(const Pose& pose, float* blocks, float* rows, bool on
   if (can_keep) std::swap(state.now, state.before);
   state.has_before = false;  // should the pose be refused
   state.now.set(compiled, pose);
-  if (compiled.objects.move(pose)) {
-    compiled.objects.evaluate(pose, compiled.blocks.row, blocks, rows);
-    return compiled.blocks.count();
-  }
   if (can_keep) {
     for (std::size_t c = 0; c < state.moved.size(); ++c)
       state.moved[c] = state.now.has_moved(state.before, c);
@@ -286,7 +289,7 @@ std::size_t Evaluator::run(const Pose& pose, float* blocks, float* rows, bool on
   std::size_t count = 0;
   for (std::size_t p = 0; p < compiled.blocks.parts.size(); ++p) {
     PartRun part(compiled, state, p, blocks, rows);
-    count += can_keep ? part.changed(p) : part.all();
+    count += can_keep ? part.changed(compiled, p) : part.all();
   }
   state.has_before = true;
   return count;
@@ -379,10 +382,7 @@ void Evaluator::bake_groups(std::span<const Pose> poses, float* frames, bool as_
         if (as_rows)
           compiled.kernel->copy_rows(group.lanes[f], compiled.blocks.lane_of_row.data(), vertex_count(),
                                      frame);
-        if (compiled.objects.move(poses[first + f]))
-          compiled.objects.evaluate(poses[first + f], compiled.blocks.row, as_rows ? nullptr : frame,
-                                    as_rows ? frame : nullptr);
-        else if (group.frames[f].has_twist())
+        if (group.frames[f].has_twist())
           run_twisted(compiled, state, group.frames[f], as_rows ? nullptr : frame, as_rows ? frame : nullptr);
       }
     }
@@ -417,11 +417,12 @@ double Evaluator::compact_error(const ShapeWeights& weights) const {
 std::size_t Evaluator::bytes() const {
   const detail::Blocks& b = compiled_->blocks;
   const std::size_t floats = b.neutral.size() + b.deltas.size() + b.joint_weights.size() +
-                             b.wires.weights.size() + b.wires.arms.size();
-  const std::size_t indices =
-      b.shape_begin.size() + b.joint_begin.size() + b.wires.begin.size() + b.wires.rows.size();
+                             b.wires.weights.size() + b.wires.arms.size() + b.objects.weights.size();
+  const std::size_t indices = b.shape_begin.size() + b.joint_begin.size() + b.wires.begin.size() +
+                              b.wires.rows.size() + b.objects.begin.size() + b.objects.rows.size();
   return 4 * (floats + indices) + 2 * (b.compact.size() + b.shapes.size() + b.joints.size()) +
-         8 * b.shape_bits.size() + sizeof(detail::WireEntry) * b.wires.entries.size();
+         8 * b.shape_bits.size() + sizeof(detail::WireEntry) * b.wires.entries.size() +
+         sizeof(detail::ObjectEntry) * b.objects.entries.size();
 }
 
 }  // namespace mien

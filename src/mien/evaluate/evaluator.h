@@ -2,7 +2,7 @@
 /// A character compiled for speed: pose in, all vertices out, into memory of the caller's, without allocation or lock.
 ///
 /// The editable Character and `evaluate` say what is right; the Evaluator says the same in single precision, tens of times
-/// faster (docs/evaluate.md has the table), but for poses that move influence objects. It does not follow the character's changes.
+/// faster (docs/evaluate.md has the table). It does not follow the character's changes.
 
 #include <cstddef>
 #include <cstdint>

@@ -5,7 +5,9 @@
 // down from n, not up from the joint by inverses: a scale of zero somewhere does no harm. A site of a dual quaternion
 // skin is at y = rigid(sum_c w_c q_c) sum_c w_c S_c x; the slopes of q_c and S_c come from those of M_c. Constraints stand between
 // a node and M_c, with limits, averages of rotations and whatever else: there the slopes of the M_c alone, a few matrices, are
-// central differences, and everything after them is as before.
+// central differences, and everything after them is as before. Influence objects make x of what shapes and wires leave,
+// x = A x0 + b; what joints do to b goes through averages of motions too, and its slope is a central difference where a joint moves
+// an object.
 #include "mien/evaluate/point_evaluator.h"
 
 #include <algorithm>
@@ -19,6 +21,7 @@
 #include "mien/evaluate/constraints.h"
 #include "mien/evaluate/detail/check_pose.h"
 #include "mien/evaluate/detail/joint_chain.h"
+#include "mien/evaluate/detail/object_motion.h"
 #include "mien/evaluate/detail/point_sites.h"
 #include "mien/evaluate/detail/wire_motion.h"
 
@@ -42,6 +45,12 @@ struct RigidBlend {
   Eigen::Matrix3d stretch = Eigen::Matrix3d::Zero();
 };
 
+/// What a shape does to an object.
+struct ShapeMove {
+  int shape = 0;
+  ObjectMove move;
+};
+
 /// A column of the Jacobian that a shape has a share in.
 struct ShapeColumn {
   int column = 0;
@@ -62,21 +71,30 @@ struct PointEvaluator::Impl : detail::PointSites {
         outline(detail::outline(character)),
         constraints(character),
         wire_rows(character),
-        wires(wire_rows) {}
+        object_rows(character, constraints),
+        wires(wire_rows) {
+    for (std::size_t s = 0; s < character.shapes.size(); ++s)
+      for (const ObjectMove& move : character.shapes[s].objects)
+        if (move.controls.rows() > 0) shape_moves.push_back({static_cast<int>(s), move});
+  }
 
   Character outline;
   ConstraintSolver constraints;
   detail::WireRows wire_rows;
+  detail::ObjectRows object_rows;
+  std::vector<ShapeMove> shape_moves;  // ascending by shape
 
   // Of the last pose.
   Eigen::MatrixXd weights;  // #S x parts
   detail::WireMotion wires;
-  Eigen::MatrixXi is_exception;          // #S x parts: the shape weight is the part's own
-  std::vector<Transform> locals;         // that obey the constraints
-  std::vector<Affine> model, carried;    // by link, by carrier
-  std::vector<StretchedMotion> motions;  // by carrier, when a site is of a dual quaternion skin
+  std::vector<detail::ObjectMotion> objects;  // by part
+  ShapeWeights part_weights{std::size_t{0}};  // of one part
+  Eigen::MatrixXi is_exception;               // #S x parts: the shape weight is the part's own
+  std::vector<Transform> locals;              // that obey the constraints
+  std::vector<Affine> model, carried;         // by link, by carrier
+  std::vector<StretchedMotion> motions;       // by carrier, when a site is of a dual quaternion skin
   std::vector<DualQuaternion> rigid;
-  PointsD shaped, placed;  // by site
+  PointsD bare, shaped, placed;  // by site: before objects, before the skin, and where it is
 
   // Of one joint freedom.
   std::vector<char> is_below;  // by link
@@ -84,15 +102,26 @@ struct PointEvaluator::Impl : detail::PointSites {
   std::vector<std::array<MotionSlope, 6>> slopes;     // by carrier: turns, then shifts
   std::vector<std::array<Motion, 6>> carrier_slopes;  // the same as matrices, when there are constraints
   std::vector<Affine> model_there, high, low;
-  std::vector<std::vector<ShapeColumn>> columns_of_shape;  // #S: the columns that a shape weight moves
+  std::vector<detail::ObjectMotion> objects_high, objects_low;  // by part
+  std::vector<std::vector<ShapeColumn>> columns_of_shape;       // #S: the columns that a shape weight moves
 
   void pose_sites(const Pose& pose);
   void set_weights(const Pose& pose);
+  bool has_objects(const Pose& pose) const { return !object_rows.empty() || !pose.objects.empty(); }
+  void move_objects(const Pose& pose, std::vector<detail::ObjectMotion>& motions);
+  Eigen::Vector3d object_shift(const Site& site, const Eigen::Vector3d& x,
+                               const std::vector<detail::ObjectMotion>& motions) const;
+  Eigen::Matrix3d object_turn(const Site& site) const;
+  Eigen::Vector3d object_slope(const Site& site, const ObjectMove& move) const;
   void split_motions();
   RigidBlend blend(const Site& site) const;
   Eigen::Vector3d place(const Site& site, const Eigen::Vector3d& shaped_site) const;
   Eigen::Matrix3d linear_of(const Site& site) const;
   void add_shape_columns(Eigen::MatrixXd& out) const;
+  void add_object_columns(const Term& term, const Eigen::Matrix3d& linear, Eigen::MatrixXd& out) const;
+  void add_object_joint_columns(const JointFreedom& freedom, const Pose& pose, Eigen::Index column,
+                                Eigen::MatrixXd& out);
+  double difference_size() const;
   void add_all_joint_columns(const std::vector<JointFreedom>& joints, const Pose& pose, Eigen::Index column,
                              Eigen::MatrixXd& out);
   void walk_below(int link, const Pose& pose);
@@ -100,7 +129,7 @@ struct PointEvaluator::Impl : detail::PointSites {
                          Eigen::MatrixXd& out);
   Eigen::Matrix<double, 3, 6> linear_slope(std::size_t site, const Eigen::Matrix3d& turn,
                                            const Eigen::Matrix3d& shift) const;
-  void carry_there(const Pose& pose, int node, int column, double step, std::vector<Affine>& there);
+  void move_there(const Pose& pose, int node, int column, double step);
   void set_carrier_slopes(const JointFreedom& freedom, const Pose& pose);
   Eigen::Matrix<double, 3, 6> linear_slope_of_carriers(std::size_t site) const;
   void set_motion_slopes(const Eigen::Matrix3d& turn, const Eigen::Matrix3d& shift);
@@ -128,6 +157,7 @@ void PointEvaluator::Impl::pose_sites(const Pose& pose) {
   constraints.apply(locals);
   chain.evaluate(outline.nodes, locals, model, carried);
   if (!motions.empty()) split_motions();
+  if (has_objects(pose)) move_objects(pose, objects);
   for (std::size_t i = 0; i < sites.size(); ++i) {
     const Site& site = sites[i];
     Eigen::Vector3d x = site.neutral;
@@ -136,9 +166,70 @@ void PointEvaluator::Impl::pose_sites(const Pose& pose) {
     for (int w = site.wire_begin; w < site.wire_end && !wires.is_still; ++w)
       x += to_part[site.column] * wires.of(wire_rows, wire_entries[w]);
     const auto row = static_cast<Eigen::Index>(i);
+    bare.row(row) = x;
+    if (site.object_begin != site.object_end) x += object_shift(site, x, objects);
     shaped.row(row) = x;
     placed.row(row) = place(site, x);
   }
+}
+
+/// What the objects do while the nodes stand as `locals` says.
+void PointEvaluator::Impl::move_objects(const Pose& pose, std::vector<detail::ObjectMotion>& motions) {
+  for (std::size_t p = 0; p < parts.size(); ++p) {
+    part_weights.values = weights.col(static_cast<Eigen::Index>(p));
+    motions[p].place_nodes(object_rows, locals);
+    motions[p].set(object_rows, part_weights, pose.objects);
+  }
+}
+
+/// What moving objects add to a site at x, in the part's space.
+Eigen::Vector3d PointEvaluator::Impl::object_shift(const Site& site, const Eigen::Vector3d& x,
+                                                   const std::vector<detail::ObjectMotion>& motions) const {
+  const int part = parts[site.column];
+  const Eigen::Vector3d bound = object_rows.field().to_model(part) * x.homogeneous();
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (int k = site.object_begin; k < site.object_end; ++k) {
+    const detail::SiteObject& object = PointSites::objects[k];
+    const ObjectPose& pose = motions[site.column].poses()[object.object];
+    if (!pose.moves) continue;
+    if (object_rows.is_frame(object.object))
+      sum += object.weight * (pose.frame * bound.homogeneous() - bound);
+    for (int e = object.begin; e < object.end; ++e)
+      sum += object.weight * shares[e].coefficient * pose.displacements.row(shares[e].control).transpose();
+  }
+  return object_rows.field().to_part(part) * sum;
+}
+
+/// How a site follows where shapes and wires put it: more than one to one when a frame turns it.
+Eigen::Matrix3d PointEvaluator::Impl::object_turn(const Site& site) const {
+  Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
+  for (int k = site.object_begin; k < site.object_end; ++k) {
+    const detail::SiteObject& object = PointSites::objects[k];
+    const ObjectPose& pose = objects[site.column].poses()[object.object];
+    if (pose.moves && object_rows.is_frame(object.object))
+      sum += object.weight * (pose.frame.leftCols<3>() - Eigen::Matrix3d::Identity());
+  }
+  const int part = parts[site.column];
+  return Eigen::Matrix3d::Identity() +
+         object_rows.field().to_part(part) * sum * object_rows.field().to_model(part).leftCols<3>();
+}
+
+/// How a site follows the control points of an object as `move` moves them.
+Eigen::Vector3d PointEvaluator::Impl::object_slope(const Site& site, const ObjectMove& move) const {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (int k = site.object_begin; k < site.object_end; ++k) {
+    const detail::SiteObject& object = PointSites::objects[k];
+    if (object.object != move.object) continue;
+    const ObjectPose& pose = objects[site.column].poses()[object.object];
+    const auto carried = [&](int control) -> Eigen::Vector3d {
+      const Eigen::Vector3d shift = move.controls.row(control).transpose();
+      return pose.moves ? pose.motions[static_cast<std::size_t>(control)].leftCols<3>() * shift : shift;
+    };
+    if (object_rows.is_frame(object.object)) sum += object.weight * carried(0);
+    for (int e = object.begin; e < object.end; ++e)
+      sum += object.weight * shares[e].coefficient * carried(shares[e].control);
+  }
+  return object_rows.field().to_part(parts[site.column]) * sum;
 }
 
 void PointEvaluator::Impl::split_motions() {
@@ -191,7 +282,11 @@ Eigen::Matrix3d PointEvaluator::Impl::linear_of(const Site& site) const {
 void PointEvaluator::Impl::add_shape_columns(Eigen::MatrixXd& out) const {
   for (const Term& term : terms) {
     const Site& site = sites[term.site];
-    const Eigen::Matrix3d linear = term.weight * linear_of(site);
+    Eigen::Matrix3d linear = term.weight * linear_of(site);
+    if (site.object_begin != site.object_end) {
+      add_object_columns(term, linear, out);
+      linear *= object_turn(site);
+    }
     for (int d = site.delta_begin; d < site.delta_end; ++d) {
       if (columns_of_shape[deltas[d].shape].empty() || is_exception(deltas[d].shape, site.column)) continue;
       const Eigen::Vector3d move = linear * deltas[d].move;
@@ -201,10 +296,46 @@ void PointEvaluator::Impl::add_shape_columns(Eigen::MatrixXd& out) const {
   }
 }
 
+/// What shapes do to a site through the objects that they move.
+void PointEvaluator::Impl::add_object_columns(const Term& term, const Eigen::Matrix3d& linear,
+                                              Eigen::MatrixXd& out) const {
+  const Site& site = sites[term.site];
+  for (const auto& [shape, move] : shape_moves) {
+    if (columns_of_shape[shape].empty() || is_exception(shape, site.column)) continue;
+    const Eigen::Vector3d shift = linear * object_slope(site, move);
+    for (const auto [column, slope] : columns_of_shape[shape])
+      out.block<3, 1>(3 * term.point, column) += slope * shift;
+  }
+}
+
+/// What a joint does to the sites through the objects that it moves.
+void PointEvaluator::Impl::add_object_joint_columns(const JointFreedom& freedom, const Pose& pose,
+                                                    Eigen::Index first, Eigen::MatrixXd& out) {
+  if (sites.empty()) return;
+  const double size = difference_size();
+  for (int column = 0; column < 6; ++column) {
+    if (!(column < 3 ? freedom.rotation : freedom.translation)) continue;
+    const double step = column < 3 ? difference_step : difference_step * size;
+    move_there(pose, freedom.node, column, step);
+    move_objects(pose, objects_high);
+    move_there(pose, freedom.node, column, -step);
+    move_objects(pose, objects_low);
+    const Eigen::Index to = first + column - (column < 3 || freedom.rotation ? 0 : 3);
+    for (const Term& term : terms) {
+      const Site& site = sites[term.site];
+      if (site.object_begin == site.object_end) continue;
+      const Eigen::Vector3d x = bare.row(term.site);
+      const Eigen::Vector3d change = object_shift(site, x, objects_high) - object_shift(site, x, objects_low);
+      out.block<3, 1>(3 * term.point, to) += term.weight * (linear_of(site) * change) / (2 * step);
+    }
+  }
+}
+
 void PointEvaluator::Impl::add_all_joint_columns(const std::vector<JointFreedom>& joints, const Pose& pose,
                                                  Eigen::Index column, Eigen::MatrixXd& out) {
   for (const JointFreedom& joint : joints) {
     add_joint_columns(joint, pose, column, out);
+    if (object_rows.is_moved_by(joint.node)) add_object_joint_columns(joint, pose, column, out);
     column += 3 * joint.rotation + 3 * joint.translation;
   }
 }
@@ -250,9 +381,8 @@ void PointEvaluator::Impl::add_joint_columns(const JointFreedom& freedom, const 
   }
 }
 
-/// What the carriers do when one of a node's six freedoms is moved by `step` before the constraints are obeyed.
-void PointEvaluator::Impl::carry_there(const Pose& pose, int node, int column, double step,
-                                       std::vector<Affine>& there) {
+/// Leaves in `locals` what the constraints make of the pose with one of a node's six freedoms moved by `step`.
+void PointEvaluator::Impl::move_there(const Pose& pose, int node, int column, double step) {
   locals = pose.locals;
   if (column < 3)
     locals[node].rotation =
@@ -261,19 +391,25 @@ void PointEvaluator::Impl::carry_there(const Pose& pose, int node, int column, d
   else
     locals[node].translation[column - 3] += step;
   constraints.apply(locals);
-  chain.evaluate(outline.nodes, locals, model_there, there);
+}
+
+/// What a shift's step is a share of.
+double PointEvaluator::Impl::difference_size() const {
+  const double size = std::max(shaped.cwiseAbs().maxCoeff(), placed.cwiseAbs().maxCoeff());
+  return size == 0 ? 1 : size;
 }
 
 void PointEvaluator::Impl::set_carrier_slopes(const JointFreedom& freedom, const Pose& pose) {
   if (sites.empty()) return;
   std::fill(is_below.begin(), is_below.end(), 1);  // any carrier may follow
-  double size = std::max(shaped.cwiseAbs().maxCoeff(), placed.cwiseAbs().maxCoeff());
-  if (size == 0) size = 1;
+  const double size = difference_size();
   for (int column = 0; column < 6; ++column) {
     if (!(column < 3 ? freedom.rotation : freedom.translation)) continue;
     const double step = column < 3 ? difference_step : difference_step * size;
-    carry_there(pose, freedom.node, column, step, high);
-    carry_there(pose, freedom.node, column, -step, low);
+    move_there(pose, freedom.node, column, step);
+    chain.evaluate(outline.nodes, locals, model_there, high);
+    move_there(pose, freedom.node, column, -step);
+    chain.evaluate(outline.nodes, locals, model_there, low);
     for (std::size_t c = 0; c < carried.size(); ++c) {
       carrier_slopes[c][column] << high[c].linear - low[c].linear, high[c].origin - low[c].origin;
       carrier_slopes[c][column] /= 2 * step;
@@ -376,6 +512,10 @@ PointEvaluator::PointEvaluator(const Character& character, const std::vector<Sur
   const auto parts = static_cast<Eigen::Index>(impl_->parts.size());
   impl_->weights.resize(shapes, parts);
   impl_->is_exception.resize(shapes, parts);
+  impl_->part_weights.values.resize(shapes);
+  for (auto* motions : {&impl_->objects, &impl_->objects_high, &impl_->objects_low})
+    motions->resize(impl_->parts.size());
+  impl_->bare.resize(static_cast<Eigen::Index>(impl_->sites.size()), 3);
   impl_->shaped.resize(static_cast<Eigen::Index>(impl_->sites.size()), 3);
   impl_->placed.resize(static_cast<Eigen::Index>(impl_->sites.size()), 3);
   impl_->is_below.resize(impl_->chain.links().size());

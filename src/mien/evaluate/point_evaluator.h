@@ -54,7 +54,7 @@ class PointEvaluator {
   ///   cost    as `positions`, times the joints of `freedoms`
   /// By the chain rule through the joints, exact wherever the evaluation is smooth; tests compare it with central
   /// differences. Where a character has constraints the slopes of its joints' matrices are central differences, right to about
-  /// 1e-9; at a limit they are half of those within it. A node whose file gave a matrix that shears is differentiated as its translation, rotation and scale.
+  /// 1e-9; at a limit they are half of those within it. So are the slopes of what a joint does through an influence object. A node whose file gave a matrix that shears is differentiated as its translation, rotation and scale.
   /// A shape that the pose weighs on one part alone moves the other parts' points alone.
   void jacobian(const Pose& pose, const Freedoms& freedoms, Eigen::MatrixXd& out);
 

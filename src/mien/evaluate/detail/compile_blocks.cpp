@@ -126,10 +126,11 @@ PartLists part_lists(const Character& character, std::size_t p, std::vector<int>
 }
 
 /// Order of the part's chosen vertices in the blocks.
-std::vector<int> block_order(const PartLists& lists, const WirePacker& wires, std::size_t part,
-                             std::size_t shape_count, std::size_t carrier_count) {
+std::vector<int> block_order(const PartLists& lists, const WirePacker& wires, const ObjectPacker& objects,
+                             std::size_t part, std::size_t shape_count, std::size_t carrier_count) {
   const std::size_t first_row = shape_count + carrier_count + 1;
-  const std::size_t bits = first_row + static_cast<std::size_t>(wires.layout().row_count());
+  const std::size_t first_object = first_row + static_cast<std::size_t>(wires.layout().row_count());
+  const std::size_t bits = first_object + static_cast<std::size_t>(objects.object_count());
   BitSets sets(lists.vertices.size(), bits);
   for (std::size_t i = 0; i < lists.vertices.size(); ++i) {
     for (int e = lists.shapes.begin[i]; e < lists.shapes.begin[i + 1]; ++e)
@@ -141,6 +142,8 @@ std::vector<int> block_order(const PartLists& lists, const WirePacker& wires, st
       for (int a = 0; a < 4; ++a)
         sets.set(i, first_row +
                         static_cast<std::size_t>(wires.layout().control_begin(entry.wire) + entry.first + a));
+    for (const int object : objects.objects_of(part, lists.vertices[i]))
+      sets.set(i, first_object + static_cast<std::size_t>(object));
   }
   return gray_order(sets, bits, lane_count);
 }
@@ -148,8 +151,8 @@ std::vector<int> block_order(const PartLists& lists, const WirePacker& wires, st
 /// Writes the blocks of one part after the other.
 class Packer {
  public:
-  Packer(const Character& character, WirePacker& wires, Blocks& blocks)
-      : character_(character), wires_(wires), blocks_(blocks) {
+  Packer(const Character& character, WirePacker& wires, ObjectPacker& objects, Blocks& blocks)
+      : character_(character), wires_(wires), objects_(objects), blocks_(blocks) {
     blocks_.words = (character.shapes.size() + 63) / 64;
   }
 
@@ -164,6 +167,7 @@ class Packer {
       add_joints(lists, lanes);
       for (int& lane : lanes) lane = lists.vertices[lane];
       wires_.add_block(part, lanes);
+      objects_.add_block(part, lanes);
     }
     blocks_.parts.push_back({begin, blocks_.count(), lists.skin});
     blocks_.vertex_count += rows;
@@ -253,6 +257,7 @@ class Packer {
 
   const Character& character_;
   WirePacker& wires_;
+  ObjectPacker& objects_;
   Blocks& blocks_;
 };
 
@@ -277,11 +282,13 @@ BlockData Blocks::view() const {
   data.joints = joints.data();
   data.joint_weights = joint_weights.data();
   data.wires = wires.view();
+  data.objects = objects.view();
   return data;
 }
 
 Blocks compile_blocks(const Character& character, const std::vector<std::vector<int>>& vertices,
-                      bool is_compact, const WireRows& wire_rows, JointChain& chain) {
+                      bool is_compact, const WireRows& wire_rows, const ObjectRows& object_rows,
+                      JointChain& chain) {
   if (!vertices.empty() && vertices.size() != character.parts.size())
     throw invalid_input("vertices", "are of " + std::to_string(vertices.size()) + " parts",
                         std::to_string(character.parts.size()) + " lists, one a part");
@@ -291,14 +298,17 @@ Blocks compile_blocks(const Character& character, const std::vector<std::vector<
   if (is_compact) blocks.scales = largest_deltas(character);
   for (float& scale : blocks.scales) scale /= 32767;
   WirePacker wires(character, wire_rows);
-  Packer packer(character, wires, blocks);
+  ObjectPacker objects(character, object_rows);
+  Packer packer(character, wires, objects, blocks);
   for (std::size_t p = 0; p < character.parts.size(); ++p) {
     const PartLists lists =
         part_lists(character, p, chosen_vertices(character, p, vertices), blocks.scales, chain);
     check_limits(0, chain.carriers().size());
-    packer.add_part(p, lists, block_order(lists, wires, p, character.shapes.size(), chain.carriers().size()));
+    packer.add_part(p, lists,
+                    block_order(lists, wires, objects, p, character.shapes.size(), chain.carriers().size()));
   }
   blocks.wires = wires.take();
+  blocks.objects = objects.take();
   const auto past = static_cast<std::uint16_t>(chain.carriers().size());
   for (auto* list : {&blocks.joints, &blocks.pivots})
     std::replace(list->begin(), list->end(), static_cast<std::uint16_t>(identity), past);

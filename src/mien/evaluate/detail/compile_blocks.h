@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "mien/character/character.h"
+#include "mien/evaluate/detail/compile_objects.h"
 #include "mien/evaluate/detail/compile_wires.h"
 #include "mien/evaluate/detail/joint_chain.h"
 #include "mien/evaluate/detail/kernel.h"
@@ -36,6 +37,7 @@ struct Blocks {
   std::vector<std::uint16_t>
       pivots;  // 16 a block of a dual quaternion skin: the carrier of the largest weight
   WireBlocks wires;
+  ObjectBlocks objects;
   std::vector<std::int32_t> row;           // 16 a block
   std::vector<std::uint32_t> lane_of_row;  // 16 block + lane
   std::vector<std::uint8_t> in_a_row;
@@ -46,6 +48,7 @@ struct Blocks {
 /// `vertices` as EvaluatorOptions has them. `chain` receives the carriers; one past its last means the identity.
 ///   throws  invalid_input: vertices that do not exist or come twice, more shapes or carriers than 65,535
 Blocks compile_blocks(const Character& character, const std::vector<std::vector<int>>& vertices,
-                      bool is_compact, const WireRows& wire_rows, JointChain& chain);
+                      bool is_compact, const WireRows& wire_rows, const ObjectRows& object_rows,
+                      JointChain& chain);
 
 }  // namespace mien::detail

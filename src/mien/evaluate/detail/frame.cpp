@@ -55,14 +55,15 @@ CompiledCharacter::CompiledCharacter(const Character& character,
     : outline(detail::outline(character)),
       constraints(character),
       wire_rows(character),
-      blocks(compile_blocks(character, vertices, is_compact, wire_rows, chain)),
+      object_rows(character, constraints),
+      blocks(compile_blocks(character, vertices, is_compact, wire_rows, object_rows, chain)),
       twists(blocks) {}
 
 Frame::Frame(const CompiledCharacter& compiled)
     : shapes_(compiled.outline.shapes.size()),
       words_(compiled.blocks.words),
       carried_count_(compiled.chain.carriers().size() + 1),
-      weights_(static_cast<Eigen::Index>(shapes_)),
+      weights_(shapes_),
       table_of_part_(compiled.blocks.parts.size(), 0),
       coefficients_(shapes_ * (compiled.blocks.parts.size() + 1)),
       active_(words_ * (compiled.blocks.parts.size() + 1)),
@@ -73,7 +74,11 @@ Frame::Frame(const CompiledCharacter& compiled)
       is_twisted_(carried_count_, 0),
       wires_(compiled.wire_rows),
       wire_rows_(3 * static_cast<std::size_t>(compiled.wire_rows.row_count())),
-      wire_scales_(static_cast<std::size_t>(compiled.wire_rows.wire_count())) {
+      wire_scales_(static_cast<std::size_t>(compiled.wire_rows.wire_count())),
+      has_objects_(is_dense_.size(), 0),
+      object_moves_(is_dense_.size() * static_cast<std::size_t>(compiled.object_rows.object_count()), 0),
+      object_rows_(3 * is_dense_.size() * static_cast<std::size_t>(compiled.object_rows.row_count())),
+      object_frames_(12 * object_moves_.size()) {
   model_.reserve(compiled.chain.links().size());
   carried_.reserve(carried_count_);
   for (int i = 0; i < 3; ++i) matrices_[12 * (carried_count_ - 1) + static_cast<std::size_t>(5 * i)] = 1;
@@ -82,8 +87,8 @@ Frame::Frame(const CompiledCharacter& compiled)
 void Frame::set(const CompiledCharacter& compiled, const Pose& pose) {
   check_pose(compiled.outline, pose);
   set_wires(compiled.wire_rows, pose);
-  set_coefficients(compiled.blocks, pose);
   set_matrices(compiled, pose);
+  set_coefficients(compiled, pose);
   if (!compiled.twists.empty()) set_rigid(compiled.twists);
 }
 
@@ -95,37 +100,60 @@ void Frame::set_wires(const WireRows& layout, const Pose& pose) {
     wire_rows_[k] = static_cast<float>(wires_.rows(static_cast<Eigen::Index>(k) / 3, k % 3));
 }
 
-void Frame::set_coefficients(const Blocks& blocks, const Pose& pose) {
-  weights_ = pose.shape_weights.values;
-  set_table(0, blocks);
+void Frame::set_coefficients(const CompiledCharacter& compiled, const Pose& pose) {
+  weights_.values = pose.shape_weights.values;
+  set_table(0, compiled, pose);
   std::fill(table_of_part_.begin(), table_of_part_.end(), 0);
   for (const PartShapeWeight& exception : pose.part_shape_weights) {
     const auto part = static_cast<std::size_t>(exception.part);
     if (part >= table_of_part_.size() || table_of_part_[part]) continue;
-    weights_on_part(pose, exception.part, weights_);
-    set_table(part + 1, blocks);
+    weights_on_part(pose, exception.part, weights_.values);
+    set_table(part + 1, compiled, pose);
     table_of_part_[part] = part + 1;
   }
 }
 
-void Frame::set_table(std::size_t table, const Blocks& blocks) {
+void Frame::set_table(std::size_t table, const CompiledCharacter& compiled, const Pose& pose) {
   float* coefficients = coefficients_.data() + table * shapes_;
   std::uint64_t* active = active_.data() + table * words_;
   std::fill(active, active + words_, 0);
   std::size_t count = 0;
   for (std::size_t s = 0; s < shapes_; ++s) {
-    const double scale = blocks.scales.empty() ? 1 : blocks.scales[s];
-    coefficients[s] = static_cast<float>(weights_[static_cast<Eigen::Index>(s)] * scale);
+    const double scale = compiled.blocks.scales.empty() ? 1 : compiled.blocks.scales[s];
+    coefficients[s] = static_cast<float>(weights_.values[static_cast<Eigen::Index>(s)] * scale);
     if (coefficients[s] == 0) continue;
     active[s / 64] |= std::uint64_t{1} << (s % 64);
     ++count;
   }
   is_dense_[table] = static_cast<double>(count) >= dense_share * static_cast<double>(shapes_);
+  set_objects(table, compiled.object_rows, pose);
+}
+
+void Frame::set_objects(std::size_t table, const ObjectRows& layout, const Pose& pose) {
+  has_objects_[table] = 0;
+  if (layout.empty() && pose.objects.empty()) return;
+  objects_.set(layout, weights_, pose.objects);
+  const auto count = static_cast<std::size_t>(layout.object_count());
+  for (std::size_t o = 0; o < count; ++o) {
+    const ObjectPose& object = objects_.poses()[o];
+    object_moves_[table * count + o] = object.moves;
+    if (!object.moves) continue;
+    has_objects_[table] = 1;
+    const std::size_t first = table * static_cast<std::size_t>(layout.row_count()) +
+                              static_cast<std::size_t>(layout.control_begin(static_cast<int>(o)));
+    Eigen::Map<Points>(object_rows_.data() + 3 * first, object.displacements.rows(), 3) =
+        object.displacements.cast<float>();
+    float* frame = object_frames_.data() + 12 * (table * count + o);
+    for (int k = 0; k < 12; ++k)
+      frame[k] = static_cast<float>(object.frame(k / 4, k % 4) - (k % 5 == 0 ? 1 : 0));
+  }
 }
 
 void Frame::set_matrices(const CompiledCharacter& compiled, const Pose& pose) {
   locals_ = pose.locals;
   compiled.constraints.apply(locals_);
+  if (!compiled.object_rows.empty() || !pose.objects.empty())
+    objects_.place_nodes(compiled.object_rows, locals_);
   compiled.chain.evaluate(compiled.outline.nodes, locals_, model_, carried_);
   for (std::size_t c = 0; c < carried_.size(); ++c)
     for (int i = 0; i < 3; ++i) {
@@ -180,6 +208,11 @@ FrameData Frame::data(std::size_t part) const {
     data.wire_scales = wire_scales_.data();
     data.is_moving = wires_.is_moving.data();
   }
+  if (has_objects_[table]) {
+    data.object_moves = object_moves_.data() + table * object_moves_.size() / has_objects_.size();
+    data.object_rows = object_rows_.data() + table * object_rows_.size() / has_objects_.size();
+    data.object_frames = object_frames_.data() + table * object_frames_.size() / has_objects_.size();
+  }
   return data;
 }
 
@@ -225,6 +258,21 @@ bool Frame::has_wire_moved(const Frame& before, const WireRows& layout, std::siz
   return wire_scales_[wire] != before.wire_scales_[wire] ||
          !is_same(layout.control_begin(w), layout.control_count(w)) ||
          !is_same(layout.turn_begin(w), layout.turn_count(w));
+}
+
+bool Frame::has_object_moved(const Frame& before, const ObjectRows& layout, std::size_t part,
+                             std::size_t object) const {
+  const FrameData now = data(part), then = before.data(part);
+  const bool moves = now.object_moves && now.object_moves[object];
+  const bool moved = then.object_moves && then.object_moves[object];
+  if (!moves || !moved) return moves != moved;
+  const int o = static_cast<int>(object);
+  const auto is_same = [](const float* a, const float* b, int first, int count) {
+    return std::equal(a + first, a + first + count, b + first);
+  };
+  return layout.is_frame(o) ? !is_same(now.object_frames, then.object_frames, 12 * o, 12)
+                            : !is_same(now.object_rows, then.object_rows, 3 * layout.control_begin(o),
+                                       3 * layout.control_count(o));
 }
 
 }  // namespace mien::detail

@@ -8,6 +8,7 @@
 #include "mien/character/pose.h"
 #include "mien/evaluate/constraints.h"
 #include "mien/evaluate/detail/compile_blocks.h"
+#include "mien/evaluate/detail/object_motion.h"
 #include "mien/evaluate/detail/wire_motion.h"
 
 namespace mien::detail {
@@ -32,6 +33,7 @@ struct CompiledCharacter {
   Character outline;
   ConstraintSolver constraints;
   WireRows wire_rows;
+  ObjectRows object_rows;
   JointChain chain;
   Blocks blocks;
   TwistTable twists;
@@ -41,7 +43,7 @@ class Frame {
  public:
   explicit Frame(const CompiledCharacter& compiled);
 
-  ///   throws  invalid_input: as check_pose and WireRows::check
+  ///   throws  invalid_input: as check_pose, WireRows::check and ObjectMotion::set
   void set(const CompiledCharacter& compiled, const Pose& pose);
 
   FrameData data(std::size_t part) const;
@@ -61,17 +63,20 @@ class Frame {
   void changed_shapes(const Frame& before, std::size_t part, std::vector<std::uint64_t>& bits) const;
   bool has_moved(const Frame& before, std::size_t carrier) const;
   bool has_wire_moved(const Frame& before, const WireRows& layout, std::size_t wire) const;
+  bool has_object_moved(const Frame& before, const ObjectRows& layout, std::size_t part,
+                        std::size_t object) const;
 
  private:
-  void set_coefficients(const Blocks& blocks, const Pose& pose);
-  void set_table(std::size_t table, const Blocks& blocks);
+  void set_coefficients(const CompiledCharacter& compiled, const Pose& pose);
+  void set_table(std::size_t table, const CompiledCharacter& compiled, const Pose& pose);
+  void set_objects(std::size_t table, const ObjectRows& layout, const Pose& pose);
   void set_matrices(const CompiledCharacter& compiled, const Pose& pose);
   void set_rigid(const TwistTable& twists);
   void set_rigid_of(std::size_t carrier);
   void set_wires(const WireRows& layout, const Pose& pose);
 
   std::size_t shapes_ = 0, words_ = 0, carried_count_ = 0;  // carriers, with the identity past the last
-  Eigen::VectorXd weights_;
+  ShapeWeights weights_;
   std::vector<std::size_t> table_of_part_;  // 0: the pose's own; p + 1: with the exceptions of part p
   std::vector<float> coefficients_;         // shapes a table
   std::vector<std::uint64_t> active_;       // words a table
@@ -83,6 +88,9 @@ class Frame {
   std::vector<char> is_twisted_;  // by carrier
   WireMotion wires_;
   std::vector<float> wire_rows_, wire_scales_;
+  ObjectMotion objects_;
+  std::vector<char> has_objects_, object_moves_;    // by table; objects a table
+  std::vector<float> object_rows_, object_frames_;  // 3 a row and table; 12 an object and table
 };
 
 }  // namespace mien::detail

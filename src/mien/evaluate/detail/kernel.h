@@ -32,6 +32,22 @@ struct WireData {
   const float* arms = nullptr;           // block_floats an entry
 };
 
+/// One influence object in one block. It moves each lane by
+///   sum of weight x row over its control points, or, a cluster or locator, by weight x (F x - x)
+struct ObjectEntry {
+  std::uint32_t object = 0;
+  std::uint32_t begin = 0, end = 0;  // weight entries; of a frame one
+  bool is_frame = false;
+};
+
+/// Views of what `compile_objects` packed.
+struct ObjectData {
+  const std::uint32_t* begin = nullptr;  // blocks + 1
+  const ObjectEntry* entries = nullptr;  // of a block ascending by object
+  const std::uint32_t* rows = nullptr;   // by weight entry: which row of FrameData::object_rows
+  const float* weights = nullptr;        // 16 a weight entry
+};
+
 /// Views of what `compile_blocks` packed. Entries of block b are [begin[b], begin[b + 1]).
 struct BlockData {
   const float* neutral = nullptr;              // block_floats a block
@@ -45,6 +61,7 @@ struct BlockData {
   const std::uint16_t* joints = nullptr;       // carrier by joint entry
   const float* joint_weights = nullptr;        // 16 a joint entry but a block's first
   WireData wires;
+  ObjectData objects;
 };
 
 /// One pose as the kernels want it.
@@ -57,6 +74,9 @@ struct FrameData {
   const float* wire_rows = nullptr;       // 3 a row; null: no wire moves
   const float* wire_scales = nullptr;     // by wire
   const char* is_moving = nullptr;        // by wire
+  const char* object_moves = nullptr;     // by object; null: none moves
+  const float* object_rows = nullptr;     // 3 a row
+  const float* object_frames = nullptr;   // 12 an object: rows of 4 of F - 1
   /// Of the one block asked for, 16 a joint entry: skin weights, those with a minus that count the other quaternion of the
   /// two that are one rotation; null: BlockData's.
   const float* turned_weights = nullptr;
@@ -66,7 +86,10 @@ struct FrameData {
 struct BlockRun {
   std::size_t begin = 0, end = 0;
   BlockSkin skin = BlockSkin::none;
-  const float* to_part = nullptr;          // 9 by rows: what wires add, to the part's space; null: the same
+  const float* to_part = nullptr;  // 9 by rows: what wires add, to the part's space; null: the same
+  const float* object_to_model =
+      nullptr;  // 12, rows of 4: the part's space to that of objects; null: the same
+  const float* object_to_part = nullptr;   // 9 by rows: what objects add, to the part's space
   float* blocks = nullptr;                 // block b goes to blocks + block_floats b; or, when null,
   float* rows = nullptr;                   // lane l of block b goes to rows + 3 row[16 b + l],
   const std::int32_t* row = nullptr;       // -1: nowhere

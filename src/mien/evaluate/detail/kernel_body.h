@@ -110,6 +110,44 @@ MIEN_INLINE void add_wires(const BlockData& data, const FrameData& frame, const 
   p = {add(p.x, sum.x), add(p.y, sum.y), add(p.z, sum.z)};
 }
 
+MIEN_INLINE Lanes row_times(const float* row, const Lanes3& p) {
+  return multiply_add(all(row[0]), p.x,
+                      multiply_add(all(row[1]), p.y, multiply_add(all(row[2]), p.z, all(row[3]))));
+}
+
+MIEN_INLINE void add_weighted(Lanes w, const float* matrix, const Lanes3& p, Lanes3& sum) {
+  sum.x = multiply_add(w, row_times(matrix, p), sum.x);
+  sum.y = multiply_add(w, row_times(matrix + 4, p), sum.y);
+  sum.z = multiply_add(w, row_times(matrix + 8, p), sum.z);
+}
+
+MIEN_INLINE void add_object(const ObjectData& objects, const FrameData& frame, const ObjectEntry& entry,
+                            const Lanes3& x, Lanes3& sum) {
+  const float* weights = objects.weights + std::size_t{lane_count} * entry.begin;
+  if (entry.is_frame) return add_weighted(load(weights), frame.object_frames + 12 * entry.object, x, sum);
+  for (std::uint32_t k = entry.begin; k < entry.end; ++k, weights += lane_count)
+    add_row(frame.object_rows + 3 * objects.rows[k], load(weights), sum);
+}
+
+/// What the moving influence objects add to a block's vertices, all of them to where shapes and wires put these.
+MIEN_INLINE void add_objects(const BlockData& data, const FrameData& frame, const BlockRun& run,
+                             std::size_t block, Lanes3& p) {
+  const float* to_model = run.object_to_model;
+  const Lanes3 x =
+      to_model ? Lanes3{row_times(to_model, p), row_times(to_model + 4, p), row_times(to_model + 8, p)} : p;
+  Lanes3 sum{all(0), all(0), all(0)};
+  bool is_moved = false;
+  for (std::uint32_t e = data.objects.begin[block]; e < data.objects.begin[block + 1]; ++e) {
+    const ObjectEntry& entry = data.objects.entries[e];
+    if (!frame.object_moves[entry.object]) continue;
+    add_object(data.objects, frame, entry, x, sum);
+    is_moved = true;
+  }
+  if (!is_moved) return;
+  if (to_model) sum = multiplied(run.object_to_part, sum);
+  p = {add(p.x, sum.x), add(p.y, sum.y), add(p.z, sum.z)};
+}
+
 /// A block's joints, and the skin weights of all but the first.
 struct BlockJoints {
   const std::uint16_t *first, *end;
@@ -131,17 +169,6 @@ MIEN_INLINE Lanes first_weights(const BlockJoints& joints) {
   return left;
 }
 
-MIEN_INLINE Lanes row_times(const float* row, const Lanes3& p) {
-  return multiply_add(all(row[0]), p.x,
-                      multiply_add(all(row[1]), p.y, multiply_add(all(row[2]), p.z, all(row[3]))));
-}
-
-MIEN_INLINE void add_weighted(Lanes w, const float* matrix, const Lanes3& p, Lanes3& sum) {
-  sum.x = multiply_add(w, row_times(matrix, p), sum.x);
-  sum.y = multiply_add(w, row_times(matrix + 4, p), sum.y);
-  sum.z = multiply_add(w, row_times(matrix + 8, p), sum.z);
-}
-
 /// Blends what the joints make of p: as many multiplications as to blend their matrices, in half the registers, so that
 /// one pass over the weights makes all three coordinates.
 MIEN_INLINE Lanes3 skinned_linear(const BlockData& data, const FrameData& frame, std::size_t block,
@@ -149,9 +176,13 @@ MIEN_INLINE Lanes3 skinned_linear(const BlockData& data, const FrameData& frame,
   const BlockJoints joints = joints_of(data, block);
   const float* weights = joints.weights;
   Lanes3 sum{all(0), all(0), all(0)};
-  for (const std::uint16_t* joint = joints.first + 1; joint < joints.end; ++joint, weights += lane_count)
-    add_weighted(load(weights), frame.matrices + 12 * *joint, p, sum);
-  add_weighted(first_weights(joints), frame.matrices + 12 * *joints.first, p, sum);
+  Lanes first = all(1);
+  for (const std::uint16_t* joint = joints.first + 1; joint < joints.end; ++joint, weights += lane_count) {
+    const Lanes w = load(weights);
+    first = subtract(first, w);
+    add_weighted(w, frame.matrices + 12 * *joint, p, sum);
+  }
+  add_weighted(first, frame.matrices + 12 * *joints.first, p, sum);
   return sum;
 }
 
@@ -198,9 +229,13 @@ MIEN_INLINE Lanes3 skinned_dual_quaternion(const BlockData& data, const FrameDat
   const Lanes3 q = frame.stretches ? stretched(data, frame, block, p) : p;
   Lanes sum[8];
   for (Lanes& part : sum) part = all(0);
-  for (const std::uint16_t* joint = joints.first + 1; joint < joints.end; ++joint, weights += lane_count)
-    add_weighted(load(weights), frame.rigid + 8 * *joint, sum);
-  add_weighted(turned ? load(turned) : first_weights(joints), frame.rigid + 8 * *joints.first, sum);
+  Lanes first = all(1);
+  for (const std::uint16_t* joint = joints.first + 1; joint < joints.end; ++joint, weights += lane_count) {
+    const Lanes w = load(weights);
+    first = subtract(first, w);
+    add_weighted(w, frame.rigid + 8 * *joint, sum);
+  }
+  add_weighted(turned ? load(turned) : first, frame.rigid + 8 * *joints.first, sum);
   return moved_rigidly(sum, sum + 4, q);
 }
 
@@ -240,6 +275,7 @@ MIEN_TARGET void evaluate(const BlockData& data, const FrameData& frame, const B
   for (std::size_t b = run.begin; b < run.end; ++b) {
     Lanes3 p = shaped(data, frame, b);
     if (frame.wire_rows) add_wires(data, frame, run.to_part, b, p);
+    if (frame.object_moves) add_objects(data, frame, run, b, p);
     p = skinned(data, frame, run.skin, b, p);
     if (run.blocks)
       store_block(run.blocks + block_floats * b, p);
@@ -301,6 +337,7 @@ MIEN_TARGET void bake(const BlockData& data, const BakeFrames& bake, const Block
     for (std::size_t f = 0; f < bake_width; ++f) {
       if (!bake.lanes[f]) continue;
       if (bake.frames[f].wire_rows) add_wires(data, bake.frames[f], run.to_part, b, p[f]);
+      if (bake.frames[f].object_moves) add_objects(data, bake.frames[f], run, b, p[f]);
       const Lanes3 q = skinned(data, bake.frames[f], run.skin, b, p[f]);
       float* to = bake.lanes[f] + block_floats * b;
       if (bake.interleave)

@@ -38,6 +38,7 @@ PointSites::PointSites(const Character& character, const std::vector<SurfacePoin
   }
   add_deltas(character, known);
   add_wires(character, known);
+  add_objects(character, known);
 }
 
 void PointSites::add_point(const Character& character, const SurfacePoint& point, Known& known) {
@@ -123,6 +124,26 @@ void PointSites::add_wires(const Character& character, const Known& known) {
     wire_entries.insert(wire_entries.end(), rows.entries.begin() + rows.offsets[row],
                         rows.entries.begin() + rows.offsets[row + 1]);
     site.wire_end = static_cast<int>(wire_entries.size());
+  }
+}
+
+void PointSites::add_objects(const Character& character, const Known& known) {
+  for (const auto& [at, index] : known) {
+    Site& site = sites[index];
+    site.object_begin = static_cast<int>(objects.size());
+    for (std::size_t o = 0; o < character.objects.size(); ++o)
+      for (const InfluenceBinding& binding : character.objects[o].bindings) {
+        const auto vertex = std::lower_bound(binding.vertices.begin(), binding.vertices.end(), at.second);
+        if (binding.part != at.first || vertex == binding.vertices.end() || *vertex != at.second) continue;
+        const auto k = static_cast<std::size_t>(vertex - binding.vertices.begin());
+        SiteObject object{static_cast<int>(o), binding.weights[k], static_cast<int>(shares.size()), 0};
+        for (int e = binding.offsets.empty() ? 0 : binding.offsets[k];
+             e < (binding.offsets.empty() ? 0 : binding.offsets[k + 1]); ++e)
+          shares.push_back({binding.controls[e], binding.coefficients[e]});
+        object.end = static_cast<int>(shares.size());
+        objects.push_back(object);
+      }
+    site.object_end = static_cast<int>(objects.size());
   }
 }
 

@@ -17,6 +17,7 @@ struct Site {
   Eigen::Vector3d neutral;
   int delta_begin = 0, delta_end = 0;
   int wire_begin = 0, wire_end = 0;
+  int object_begin = 0, object_end = 0;
   int influence_begin = 0, influence_end = 0;  // none: the site is in model space already
   bool is_dual_quaternion = false;
 };
@@ -29,6 +30,18 @@ struct Delta {
 struct Influence {
   int carrier = 0;
   double weight = 1;
+};
+
+/// What an influence object does to a site: weight times what its frame does, or what its control points in [begin, end) do.
+struct SiteObject {
+  int object = 0;
+  double weight = 1;
+  int begin = 0, end = 0;
+};
+
+struct ControlShare {
+  int control = 0;
+  double coefficient = 1;
 };
 
 /// A point is the sum of weight x site over its terms.
@@ -44,7 +57,9 @@ struct PointSites {
   std::vector<Delta> deltas;
   std::vector<WireField::Entry> wire_entries;
   std::vector<Eigen::Matrix3d> to_part;  // by column: model space vectors to the part's space
-  std::vector<Influence> influences;     // the strongest of a site first
+  std::vector<SiteObject> objects;
+  std::vector<ControlShare> shares;
+  std::vector<Influence> influences;  // the strongest of a site first
   std::vector<Term> terms;
   JointChain chain;
 
@@ -57,6 +72,7 @@ struct PointSites {
   void add_influences(const Character& character, const Part& part, int vertex);
   void add_deltas(const Character& character, const Known& known);
   void add_wires(const Character& character, const Known& known);
+  void add_objects(const Character& character, const Known& known);
 };
 
 }  // namespace mien::detail

@@ -1,0 +1,280 @@
+// Influence objects in compiled evaluators: what the reference makes of them.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <functional>
+
+#include "character/objects_in_code.h"
+#include "evaluate/rigs.h"
+#include "mien/core/error.h"
+#include "mien/deform/influence.h"
+#include "mien/evaluate/evaluate.h"
+#include "mien/evaluate/evaluator.h"
+#include "mien/evaluate/point_evaluator.h"
+
+namespace mien {
+namespace {
+
+using ::testing::HasSubstr;
+
+constexpr InstructionSet all_sets[] = {InstructionSet::plain, InstructionSet::avx2, InstructionSet::avx512};
+
+std::vector<float> evaluated(Evaluator& evaluator, const Pose& pose) {
+  std::vector<float> positions(3 * evaluator.vertex_count(), NAN);
+  evaluator.evaluate(pose, positions);
+  return positions;
+}
+
+std::vector<float> joined(const std::vector<Points>& parts) {
+  std::vector<float> all;
+  for (const Points& part : parts) all.insert(all.end(), part.data(), part.data() + part.size());
+  return all;
+}
+
+double distance(const std::vector<float>& a, const std::vector<float>& b) {
+  double most = a.size() == b.size() ? 0 : 1e30;
+  for (std::size_t i = 0; i < a.size() && i < b.size(); ++i)
+    most = std::max<double>(most, std::abs(a[i] - b[i]));
+  return most;
+}
+
+/// The largest coordinate involved: posed, of joints, of what objects add.
+double reach(const Character& character, const Pose& pose) {
+  double most = 0;
+  for (const float x : joined(evaluate(character, pose))) most = std::max<double>(most, std::abs(x));
+  for (const Eigen::Matrix4d& matrix : model_matrices(character, pose))
+    most = std::max(most, matrix.topRightCorner<3, 1>().cwiseAbs().maxCoeff());
+  const InfluenceField field(character);
+  for (const ObjectPose& object :
+       field.pose(model_matrices(character, pose), pose.shape_weights, pose.objects)) {
+    if (object.moves) most = std::max(most, object.displacements.cwiseAbs().maxCoeff());
+    if (object.moves) most = std::max(most, object.frame.cwiseAbs().maxCoeff());
+  }
+  return most + 1;  // neutral coordinates are below one
+}
+
+bool same_bytes(const std::vector<float>& a, const std::vector<float>& b) {
+  return a.size() == b.size() && std::memcmp(a.data(), b.data(), 4 * a.size()) == 0;
+}
+
+std::vector<SurfacePoint> all_vertices(const Character& character) {
+  std::vector<SurfacePoint> all;
+  for (std::size_t p = 0; p < character.parts.size(); ++p)
+    for (int v = 0; v < static_cast<int>(character.parts[p].mesh.vertex_count()); ++v)
+      all.push_back({static_cast<int>(p), -1, v, {1, 0, 0}, {0, 1, 2}});
+  return all;
+}
+
+TEST(EvaluatorObjects, InvalidInputs) {
+  const Character with = test::objects_rig(1), without = test::random_rig(1);
+  const auto error_of = [&](const Character& character, const ObjectMove& move) {
+    Evaluator evaluator(character);
+    PointEvaluator points(character, {{0, -1, 3, {1, 0, 0}, {0, 1, 2}}});
+    std::vector<float> out(3 * evaluator.vertex_count());
+    PointsD few;
+    Pose pose = rest_pose(character);
+    pose.objects = {move};
+    std::string text;
+    for (const auto& call : {std::function<void()>([&] { evaluator.evaluate(pose, out); }),
+                             std::function<void()>([&] { points.positions(pose, few); }),
+                             std::function<void()>([&] { evaluate(character, pose); })}) {
+      std::string here;
+      try {
+        call();
+      } catch (const Error& error) {
+        here = error.what();
+      }
+      EXPECT_TRUE(text.empty() || text == here) << text << " | " << here;
+      text = here;
+    }
+    return text;
+  };
+  EXPECT_THAT(error_of(with, {9, {}}), HasSubstr("object 9: does not exist; one from 0 to 3"));
+  EXPECT_THAT(error_of(with, {0, PointsD::Zero(2, 3)}), HasSubstr("is moved by 2 control points"));
+  EXPECT_THAT(error_of(with, {0, PointsD::Constant(3, 3, NAN)}), HasSubstr("not finite"));
+  EXPECT_THAT(error_of(without, {0, {}}), HasSubstr("the character has no objects"));
+}
+
+TEST(EvaluatorObjects, AgreeWithEvaluate) {
+  for (unsigned seed = 0; seed < 24; ++seed) {
+    const Character character = test::objects_rig(seed);
+    const Pose pose = test::objects_pose(character, seed);
+    const auto exact = joined(evaluate(character, pose));
+    for (const InstructionSet set : all_sets) {
+      if (!is_supported(set)) continue;
+      Evaluator evaluator(character, {DeltaPrecision::exact, set, {}});
+      const auto rows = evaluated(evaluator, pose);
+      EXPECT_LT(distance(exact, rows), evaluator_tolerance * reach(character, pose))
+          << "seed " << seed << ", " << name_of(set);
+      std::vector<float> blocks(48 * evaluator.block_count());
+      evaluator.evaluate_blocks(pose, blocks);
+      for (std::size_t lane = 0; lane < evaluator.lane_rows().size(); ++lane) {
+        const int row = evaluator.lane_rows()[lane];
+        for (std::size_t axis = 0; row >= 0 && axis < 3; ++axis)
+          EXPECT_EQ(blocks[48 * (lane / 16) + 16 * axis + lane % 16],
+                    rows[3 * static_cast<std::size_t>(row) + axis]);
+      }
+    }
+  }
+}
+
+TEST(EvaluatorObjects, AtRestNothingMovesBitForBit) {
+  const Character character = test::objects_rig(5);
+  Character bare = character;
+  bare.objects.clear();
+  for (Shape& shape : bare.shapes) shape.objects.clear();
+  Pose pose = rest_pose(character);
+  pose.shape_weights.values[1] = 0.7;
+  Evaluator with(character), without(bare);
+  EXPECT_TRUE(same_bytes(evaluated(with, pose), evaluated(without, pose)));
+}
+
+TEST(EvaluatorObjects, UpdateGivesWhatEvaluateGives) {
+  for (unsigned seed = 0; seed < 6; ++seed) {
+    const Character character = test::objects_rig(seed);
+    Evaluator evaluator(character), other(character);
+    Pose pose = test::objects_pose(character, seed);
+    std::vector<float> kept(3 * evaluator.vertex_count());
+    evaluator.update(pose, kept);
+    EXPECT_EQ(evaluator.update(pose, kept), 0u);
+    const std::function<void()> steps[] = {
+        [&] { pose.objects[0].controls(1, 2) += 0.1; },
+        [&] { pose.shape_weights.values[0] += 0.2; },
+        [&] { pose.locals[4].translation.x() += 0.1; },
+        [&] {
+          pose.part_shape_weights = {{1, 0, 0.9}};
+        },
+        [&] { pose.objects.clear(); },
+        [&] { pose = rest_pose(character); },
+        [&] {
+          pose.objects = {{3, PointsD::Ones(1, 3)}};
+        },
+        [&] { pose.objects[0].controls *= 2; },
+    };
+    for (std::size_t step = 0; step < std::size(steps); ++step) {
+      steps[step]();
+      evaluator.update(pose, kept);
+      ASSERT_TRUE(same_bytes(kept, evaluated(other, pose))) << "seed " << seed << ", step " << step;
+    }
+  }
+}
+
+TEST(EvaluatorObjects, OneObjectUpdatesTheBlocksThatItReaches) {
+  Character character;
+  character.parts.emplace_back();
+  character.parts[0].mesh.positions = Points::Random(1600, 3);
+  for (int o = 0; o < 2; ++o) {
+    character.objects.push_back(test::line());
+    character.objects[o].name += std::to_string(o);
+    character.objects[o].carrier = -1;
+    character.objects[o].bindings[0].vertices = {7 + 800 * o, 90 + 800 * o, 91 + 800 * o};
+  }
+  Evaluator evaluator(character);
+  std::vector<float> out(3 * 1600);
+  Pose pose = rest_pose(character);
+  EXPECT_EQ(evaluator.update(pose, out), 100u);
+  pose.objects = {{1, PointsD::Ones(2, 3)}};
+  EXPECT_LE(evaluator.update(pose, out), 3u);
+  EXPECT_NEAR(out[3 * 807], character.parts[0].mesh.positions(807, 0) + 1, 1e-6);
+  EXPECT_EQ(out[3 * 7], character.parts[0].mesh.positions(7, 0));
+}
+
+TEST(EvaluatorObjects, ChosenVerticesAndBakes) {
+  const Character character = test::objects_rig(4);
+  std::vector<Pose> poses;
+  for (unsigned f = 0; f < 11; ++f) poses.push_back(test::objects_pose(character, f));
+  poses[4] = rest_pose(character);
+  poses[6].part_shape_weights = {{1, 0, 0.5}, {2, 3, -0.5}};
+  for (const InstructionSet set : all_sets) {
+    if (!is_supported(set)) continue;
+    Evaluator whole(character, {DeltaPrecision::exact, set, {}});
+    Evaluator part(character, {DeltaPrecision::exact, set, {{4, 0, 2}, {1}, {3}}});
+    std::vector<float> frames(poses.size() * 3 * whole.vertex_count()), single;
+    whole.bake(poses, frames);
+    const std::size_t rows[] = {4, 0, 2, whole.first_row(1) + 1, whole.first_row(2) + 3};
+    for (const Pose& pose : poses) {
+      const auto all = evaluated(whole, pose), few = evaluated(part, pose);
+      single.insert(single.end(), all.begin(), all.end());
+      for (std::size_t i = 0; i < few.size(); ++i) EXPECT_EQ(few[i], all[3 * rows[i / 3] + i % 3]);
+    }
+    EXPECT_TRUE(same_bytes(frames, single)) << name_of(set);
+  }
+}
+
+TEST(EvaluatorObjects, PointsFollowThem) {
+  for (unsigned seed = 0; seed < 12; ++seed) {
+    Character character = test::objects_rig(seed);
+    if (seed % 3 == 2) character.constraints = test::constrained_rig(seed).constraints;
+    Pose pose = test::objects_pose(character, seed);
+    if (seed % 2) pose.part_shape_weights = {{1, 0, 0.9}};
+    PointEvaluator points(character, all_vertices(character));
+    PointsD out;
+    points.positions(pose, out);
+    const auto exact = joined(evaluate(character, pose));
+    double most = 0;
+    for (Eigen::Index i = 0; i < out.size(); ++i)
+      most = std::max(most, std::abs(out(i / 3, i % 3) - exact[static_cast<std::size_t>(i)]));
+    EXPECT_LT(most, 1e-6 * reach(character, pose)) << "seed " << seed;
+  }
+}
+
+/// `pose` with freedom `column` of {all shapes, every node's turns and shifts} moved by `step`.
+Pose moved(const Pose& pose, Eigen::Index column, double step) {
+  Pose result = pose;
+  const Eigen::Index shapes = pose.shape_weights.values.size();
+  if (column < shapes) {
+    result.shape_weights.values[column] += step;
+    return result;
+  }
+  Transform& local = result.locals[static_cast<std::size_t>((column - shapes) / 6)];
+  const auto axis = (column - shapes) % 6;
+  if (axis < 3)
+    local.rotation = local.rotation * Eigen::AngleAxisd(step, Eigen::Vector3d::Unit(axis));
+  else
+    local.translation[axis - 3] += step;
+  return result;
+}
+
+TEST(EvaluatorObjects, SlopesOfPointsFollowThemToo) {
+  for (unsigned seed = 0; seed < 6; ++seed) {
+    Character character = test::objects_rig(seed);
+    if (seed == 4) character.constraints = test::constrained_rig(seed).constraints;
+    Pose pose = test::objects_pose(character, seed);
+    if (seed % 2) pose.part_shape_weights = {{1, 0, 0.9}};
+    PointEvaluator points(character, all_vertices(character));
+    Freedoms all;
+    for (int s = 0; s < static_cast<int>(character.shapes.size()); ++s) all.shapes.push_back(s);
+    for (int n = 0; n < static_cast<int>(character.nodes.size()); ++n) all.joints.push_back({n, true, true});
+    Eigen::MatrixXd slopes;
+    points.jacobian(pose, all, slopes);
+    const double step = 1e-5, scale = std::max(1.0, slopes.cwiseAbs().maxCoeff());
+    PointsD high, low;
+    for (Eigen::Index c = 0; c < all.column_count(); ++c) {
+      points.positions(moved(pose, c, step), high);
+      points.positions(moved(pose, c, -step), low);
+      for (Eigen::Index i = 0; i < high.size(); ++i)
+        ASSERT_NEAR(slopes(i, c), (high(i / 3, i % 3) - low(i / 3, i % 3)) / (2 * step), 1e-7 * scale)
+            << "seed " << seed << ", column " << c << ", coordinate " << i;
+    }
+  }
+}
+
+TEST(EvaluatorObjects, ShapeRowsAreThePositionsLinearPart) {
+  const Character character = test::objects_rig(3);
+  const Pose pose = test::objects_pose(character, 3);
+  PointEvaluator points(character, all_vertices(character));
+  Pose other = pose;
+  other.shape_weights.values.setConstant(-0.7);
+  Eigen::MatrixXd rows;
+  points.shape_rows(pose, rows);
+  PointsD from, to;
+  points.positions(pose, from);
+  points.positions(other, to);
+  const Eigen::VectorXd move = rows * (other.shape_weights.values - pose.shape_weights.values);
+  for (Eigen::Index p = 0; p < from.rows(); ++p)
+    EXPECT_LT((to.row(p) - from.row(p) - move.segment<3>(3 * p).transpose()).norm(), 1e-10);
+}
+
+}  // namespace
+}  // namespace mien
