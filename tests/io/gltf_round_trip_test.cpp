@@ -10,6 +10,7 @@ namespace {
 
 using test::expect_same;
 using test::Folder;
+using ::testing::HasSubstr;
 
 using test::channel;
 using test::delta;
@@ -122,8 +123,8 @@ TEST(gltf_round_trip, joints_of_several_trees_get_a_common_root) {
   EXPECT_EQ(again.nodes[0].parent, 8);
 }
 
-TEST(gltf_round_trip, weights_channels_with_keys_of_their_own_are_united_exactly) {
-  const Folder folder;
+/// The full character; two of its clip's shapes move on keys of their own.
+Character with_own_keys() {
   Character c = full_character();
   c.clips[0].channels.resize(4);
   Channel linear = channel(Channel::Property::shape_weight, 1, Interpolation::linear, {0, 1});
@@ -132,8 +133,48 @@ TEST(gltf_round_trip, weights_channels_with_keys_of_their_own_are_united_exactly
   linear.shape = 0;
   linear.times = {0.5f, 2};
   c.clips[0].channels.push_back(linear);
+  return c;
+}
+
+TEST(gltf_round_trip, weights_channels_keep_their_own_keys) {
+  const Folder folder;
+  const Character c = with_own_keys();
   save(c, folder / "talk.glb");
-  const Clip clip = load(folder / "talk.glb").clips.at(0);
+  const Clip again = load(folder / "talk.glb").clips.at(0);
+  for (const int shape : {0, 1}) {
+    const auto of_shape = [&](const Channel& k) { return k.shape == shape; };
+    const auto& was = c.clips[0].channels;
+    const auto before = std::find_if(was.begin(), was.end(), of_shape);
+    ASSERT_EQ(std::count_if(again.channels.begin(), again.channels.end(), of_shape), 1);
+    const auto after = std::find_if(again.channels.begin(), again.channels.end(), of_shape);
+    EXPECT_EQ(after->times, before->times);
+    EXPECT_EQ(after->values, before->values);
+    EXPECT_EQ(after->part, before->part);
+    EXPECT_EQ(after->interpolation, before->interpolation);
+  }
+}
+
+TEST(gltf_round_trip, own_keys_of_shapes_that_the_file_does_not_have_are_said) {
+  const Folder folder;
+  save(with_own_keys(), folder / "talk.gltf");
+  const nlohmann::json good = nlohmann::json::parse(read_file(folder / "talk.gltf"));
+  const auto error_with = [&](const char* key, const nlohmann::json& value) {
+    nlohmann::json file = good;
+    file["animations"][0]["extensions"]["MIEN_character"]["weights"][0][key] = value;
+    const auto path = folder.write("talk.gltf", file.dump());
+    return test::error_of([&] { load(path); });
+  };
+  EXPECT_THAT(error_with("shape", "gone"), HasSubstr("names gone; name one of the shapes"));
+  EXPECT_THAT(error_with("mesh", 99), HasSubstr("is 99; name a mesh in use"));
+  EXPECT_THAT(error_with("input", 9999), HasSubstr("input"));
+}
+
+TEST(gltf_round_trip, other_programs_see_weights_channels_united_exactly) {
+  const Folder folder;
+  save(with_own_keys(), folder / "talk.gltf");
+  nlohmann::json file = nlohmann::json::parse(read_file(folder / "talk.gltf"));
+  file["animations"][0].erase("extensions");
+  const Clip clip = load(folder.write("talk.gltf", file.dump())).clips.at(0);
   const auto found =
       std::find_if(clip.channels.begin(), clip.channels.end(), [](const Channel& k) { return k.shape == 1; });
   ASSERT_NE(found, clip.channels.end());

@@ -60,7 +60,11 @@ std::vector<std::array<int, 3>> chart_neighbours(const UvSource& source) {
 
 class CornerFinder {
  public:
-  CornerFinder(const UvSource& source) : source_(source), neighbours_(chart_neighbours(source)) {}
+  CornerFinder(const UvSource& source) : source_(source), neighbours_(chart_neighbours(source)) {
+    middles_.resize(source.uvs.size());
+    for (int t = 0; t < static_cast<int>(source.uvs.size()); ++t)
+      middles_[at(t)] = (corner(t, 0) + corner(t, 1) + corner(t, 2)) / 3;
+  }
 
   /// Triangles of the chart around `start`, nearest rings first, no further than `reach` from `centre`.
   std::vector<int> around(int start, const Eigen::Vector3d& centre, double reach) const {
@@ -68,9 +72,8 @@ class CornerFinder {
     for (std::size_t i = 0; i < found.size() && found.size() < most_triangles; ++i)
       for (const int next : neighbours_[at(found[i])]) {
         if (next < 0 || std::find(found.begin(), found.end(), next) != found.end()) continue;
-        const Eigen::Vector3d middle = (corner(next, 0) + corner(next, 1) + corner(next, 2)) / 3;
         const double size = (corner(next, 1) - corner(next, 0)).norm();
-        if ((middle - centre).norm() <= reach + size) found.push_back(next);
+        if ((middles_[at(next)] - centre).norm() <= reach + size) found.push_back(next);
       }
     return found;
   }
@@ -79,6 +82,7 @@ class CornerFinder {
     int best = candidates.front();
     double distance = std::numeric_limits<double>::infinity();
     for (const int t : candidates) {
+      if (is_further(t, position, distance)) continue;
       const auto found = closest_point_on_triangle(position, corner(t, 0), corner(t, 1), corner(t, 2));
       const double d = (found.position - position).squaredNorm();
       if (d < distance) {
@@ -98,8 +102,17 @@ class CornerFinder {
 
  private:
   Eigen::Vector3d corner(int t, int k) const { return row(source_.guide, source_.triangles(t, k)); }
+  /// Whether no point of the triangle can be as near to `position`, by its middle and its reach from there.
+  bool is_further(int t, const Eigen::Vector3d& position, double square) const {
+    const Eigen::Vector3d& middle = middles_[at(t)];
+    double reach = 0;
+    for (int k = 0; k < 3; ++k) reach = std::max(reach, (corner(t, k) - middle).squaredNorm());
+    const double between = (position - middle).norm() - std::sqrt(reach);
+    return between > 0 && between * between > square;
+  }
   const UvSource& source_;
   std::vector<std::array<int, 3>> neighbours_;
+  std::vector<Eigen::Vector3d> middles_;
 };
 
 /// Per corner of all faces its UV; NaN where the guide has none.

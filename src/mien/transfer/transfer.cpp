@@ -190,15 +190,25 @@ std::vector<SourcePoint> Run::find_points() const {
   return points;
 }
 
+/// The skin is where the guide is; the spline takes along what lies inside.
+void Run::warp_source() {
+  warped_source_.resize(source_pool_.positions.rows(), 3);
+  for (std::size_t r = 0; r < source_surface_.vertices.size(); ++r)
+    warped_source_.row(source_surface_.vertices[r]) = registration_.guide.row(static_cast<Eigen::Index>(r));
+  std::vector<int> inside;
+  for (std::size_t v = 0; v < source_pool_.piece.size(); ++v)
+    if (!source_skin_[at(source_pool_.piece[v])]) inside.push_back(static_cast<int>(v));
+  const PointsD positions = source_pool_.positions(inside, Eigen::all);
+  warped_source_(inside, Eigen::all) =
+      thesis() ? (*landmark_spline_)(positions) : (*dense_)(registration_.similarity(positions));
+}
+
 void Run::find_places() {
   const Surface &source = source_surface_.surface, &target = target_surface_.surface;
   if (!source_.skins.empty())
     source_weights_ = pooled_skin_weights(source_, source_pool_, list_joints(source_));
   carrier_ = std::make_unique<AttributeCarrier>(find_points(), source, target);
-  warped_source_ = thesis() ? (*landmark_spline_)(source_pool_.positions)
-                            : (*dense_)(registration_.similarity(source_pool_.positions));
-  for (std::size_t r = 0; r < source_surface_.vertices.size(); ++r)
-    warped_source_.row(source_surface_.vertices[r]) = registration_.guide.row(static_cast<Eigen::Index>(r));
+  warp_source();
   piece_motions_ = piece_motions(
       source_pool_, source_skin_, source_.shapes.size(),
       [&](std::size_t s) { return pooled_delta(source_.shapes[s]); }, source_weights_,
@@ -207,8 +217,10 @@ void Run::find_places() {
   for (const PiecePlan& plan : plans_)
     report_.pieces.push_back({target_pool_.piece_name[at(plan.piece)], std::string(name_of(plan.kind)),
                               std::string(name_of(plan.way))});
-  aligned_query_ = std::make_unique<SurfaceQuery>(maps_.aligned, source.triangles);
-  target_query_ = std::make_unique<SurfaceQuery>(target.positions, target.triangles);
+  if (has_control_points()) {
+    aligned_query_ = std::make_unique<SurfaceQuery>(maps_.aligned, source.triangles);
+    target_query_ = std::make_unique<SurfaceQuery>(target.positions, target.triangles);
+  }
   report_maps();
 }
 
@@ -271,14 +283,17 @@ double Run::exaggeration_of(const std::string& shape) const {
   return options_.exaggeration * (found == options_.shape_exaggeration.end() ? 1.0 : found->second);
 }
 
+void Run::find_scale() {
+  const Triangles& triangles = source_surface_.surface.triangles;
+  maps_.scale = local_scale(maps_.aligned, registration_.guide, triangles, scale_radius * registration_.unit);
+  if (twin_) keep_scale(kept_, maps_.aligned, triangles, registration_.unit, maps_.scale);
+}
+
 void Run::carry_shapes() {
   const std::size_t count = source_.shapes.size();
   report_.flips.assign(count, 0);
   report_.source_flips.assign(count, 0);
-  maps_.scale = local_scale(maps_.aligned, registration_.guide, source_surface_.surface.triangles,
-                            scale_radius * registration_.unit);
-  if (twin_)
-    keep_scale(kept_, maps_.aligned, source_surface_.surface.triangles, registration_.unit, maps_.scale);
+  if (model_ != DeltaModel::thesis || has_control_points()) find_scale();
   if (count == 0) return;
   result_.sliders = source_.sliders;
   result_.correctives = source_.correctives;
@@ -315,19 +330,19 @@ void Run::carry_shapes() {
       contact.close_lids(s, moved);
     }
     const double exaggeration = exaggeration_of(shape.name);
+    const PointsD exaggerated = exaggeration * pooled;
     PointsD skin = exaggeration * PointsD((*carrier_)(moved));
     if (close_lids && contact.closes_lid(s)) keep_out_of_eyes(balls, target_surface_.surface.positions, skin);
     PointsD target = PointsD::Zero(target_pool_.positions.rows(), 3);
     for (std::size_t r = 0; r < target_surface_.vertices.size(); ++r)
       target.row(target_surface_.vertices[r]) = skin.row(static_cast<Eigen::Index>(r));
     for (const PiecePlan& plan : plans_) {
-      const PointsD piece = carry_piece(pieces, plan, exaggeration * pooled, skin);
+      const PointsD piece = carry_piece(pieces, plan, exaggerated, skin);
       for (std::size_t i = 0; i < plan.vertices.size(); ++i)
         target.row(plan.vertices[i]) = piece.row(static_cast<Eigen::Index>(i));
     }
     if (twin_)
-      set_twin_rows(*twin_, source_pool_.triangles, twin_->placement.of_vectors(exaggeration * pooled),
-                    target);
+      set_twin_rows(*twin_, source_pool_.triangles, twin_->placement.of_vectors(exaggerated), target);
     count_flips(s, source_rows, skin);
     result_.shapes[s] = shape_of_target(shape, target_pool_, result_, target, least * registration_.unit);
     result_.shapes[s].wires = carry_wire_moves(source_, shape.wires, rig, exaggeration);

@@ -29,6 +29,7 @@ class ClipReader {
   void read_channel(const JsonObject& channel, const std::vector<JsonObject>& samplers, Clip& clip);
   void read_transform(Channel channel, const JsonObject& sampler, Clip& clip);
   void read_vendor(const JsonObject& animation, Clip& clip);
+  void read_own_weights(const JsonObject& vendor, Clip& clip);
   void read_keys(const JsonObject& source, Channel& channel);
   void read_weights(const Channel& channel, const JsonObject& sampler, Clip& clip);
   std::size_t accessors() const { return document_.count("accessors"); }
@@ -54,6 +55,30 @@ void ClipReader::read_keys(const JsonObject& source, Channel& channel) {
   channel.values = document_.floats(source.index("output", accessors()), channel.width()).values;
 }
 
+/// The clip's own channels of shapes, in place of those on the keys of all of a mesh's shapes.
+void ClipReader::read_own_weights(const JsonObject& vendor, Clip& clip) {
+  std::erase_if(clip.channels,
+                [](const Channel& channel) { return channel.property == Channel::Property::shape_weight; });
+  for (const JsonObject& source : vendor.objects("weights")) {
+    Channel channel;
+    channel.property = Channel::Property::shape_weight;
+    channel.shape = find_shape(character_, source.text("shape"));
+    if (channel.shape < 0)
+      throw io_error(source.place_of("shape"), fmt::format("names {}", source.text("shape").substr(0, 100)),
+                     "name one of the shapes");
+    if (source.has("mesh")) {
+      const auto mesh = source.integer("mesh", 0, 1 << 30);
+      const auto part =
+          std::find_if(sources_.begin(), sources_.end(), [&](const PartSource& s) { return s.mesh == mesh; });
+      if (part == sources_.end())
+        throw io_error(source.place_of("mesh"), fmt::format("is {}", mesh), "name a mesh in use");
+      channel.part = static_cast<int>(part - sources_.begin());
+    }
+    read_keys(source, channel);
+    clip.channels.push_back(std::move(channel));
+  }
+}
+
 /// The channels of shapes that the clip does not animate itself are there for other programs.
 void ClipReader::read_vendor(const JsonObject& animation, Clip& clip) {
   if (!animation.has("extensions") || !animation.object("extensions").has(vendor_extension)) return;
@@ -65,6 +90,7 @@ void ClipReader::read_vendor(const JsonObject& animation, Clip& clip) {
              std::find(own.begin(), own.end(), character_.shapes[channel.shape].name) == own.end();
     });
   }
+  if (vendor.has("weights")) read_own_weights(vendor, clip);
   if (vendor.truth_or("still", false)) clip.channels.clear();  // there for glTF's sake alone
   for (const JsonObject& source : vendor.objects("wires")) {
     Channel channel = read_wire_channel(source, character_);

@@ -161,7 +161,8 @@ class ClipWriter {
  private:
   bool drives(const Channel& channel, int part) const;
   void write_weights(const Clip& clip, int part);
-  /// The sliders' channels and, where glTF's form animates more, the shapes that the clip itself animates.
+  /// The sliders' channels and, where glTF's form animates more, the shapes that the clip itself animates; their channels, where glTF's
+  /// form gave them other keys.
   Json vendor(const Clip& clip) const;
   void hold_still(const Clip& clip);
   void add(int node, const char* path, const Channel& keys);
@@ -171,6 +172,7 @@ class ClipWriter {
   GltfBuilder& builder_;
   ShapeWeights rest_;
   std::vector<bool> written_parts_;
+  bool has_other_keys_ = false;  // a shape's weight than its channel in the clip
   Json samplers_ = Json::array(), channels_ = Json::array();
   std::map<std::tuple<int, int, std::string>, std::size_t> sampler_numbers_;
 };
@@ -211,8 +213,9 @@ void ClipWriter::write_weights(const Clip& clip, int part) {
     rest.push_back(rest_.values[static_cast<Eigen::Index>(s)]);
   }
   if (!first) return;
-  WeightTrack track =
-      share_keys(sources, *first) ? interleaved(sources, rest, *first) : united(sources, rest);
+  const bool is_exact = share_keys(sources, *first);
+  has_other_keys_ = has_other_keys_ || !is_exact;
+  WeightTrack track = is_exact ? interleaved(sources, rest, *first) : united(sources, rest);
   Channel keys;
   keys.property = Channel::Property::shape_weight;
   keys.interpolation = track.interpolation;
@@ -235,6 +238,16 @@ Json ClipWriter::vendor(const Clip& clip) const {
   for (const Channel& channel : clip.channels)
     if (channel.property == Channel::Property::object_control && !channel.times.empty())
       vendor["objects"].push_back(object_channel_json(character_, channel, builder_));
+  for (const Channel& channel : clip.channels)
+    if (has_other_keys_ && channel.property == Channel::Property::shape_weight && !channel.times.empty()) {
+      Json weight = {{"shape", character_.shapes[channel.shape].name},
+                     {"interpolation", name_of(channel.interpolation)},
+                     {"input", builder_.add_floats(channel.times, 1, true)},
+                     {"output", builder_.add_floats(channel.values, 1)}};
+      if (channel.part >= 0) weight["mesh"] = channel.part;
+      vendor["weights"].push_back(std::move(weight));
+    }
+  if (vendor.contains("weights")) return vendor;
   std::vector<bool> own(character_.shapes.size(), false);
   for (const Channel& channel : clip.channels)
     if (channel.property == Channel::Property::shape_weight) own[channel.shape] = true;

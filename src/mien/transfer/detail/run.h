@@ -42,8 +42,10 @@ class Run {
   bool register_twin(const PointsD& from, const PointsD& to);
   void keep_twin();
   std::vector<SourcePoint> find_points() const;
+  void warp_source();
   void find_places();
   void place_joints();
+  void find_scale();
   void carry_shapes();
   void carry_weights();
   void carry_texture_coordinates();
@@ -57,6 +59,7 @@ class Run {
   void report_maps();
   void count_flips(std::size_t shape, const PointsD& source_rows, const PointsD& target_rows);
   bool carries_nodes() const;
+  bool has_control_points() const { return !source_.objects.empty() || !source_.wires.empty(); }
   std::vector<int> carried_sliders() const;
   SpaceMap space_map() const;
   RigMap rig_map() const;
@@ -83,8 +86,9 @@ class Run {
   DeltaModel model_ = DeltaModel::automatic;
   std::unique_ptr<ThinPlateSpline> dense_, landmark_spline_;
   std::unique_ptr<AttributeCarrier> carrier_;
-  std::unique_ptr<SurfaceQuery> aligned_query_, target_query_;  // skins: aligned source, target
-  PointsD warped_source_;                                       // pooled source vertices on the target
+  std::unique_ptr<SurfaceQuery> aligned_query_,
+      target_query_;             // skins, for control points: aligned source, target
+  PointsD warped_source_;        // pooled source vertices on the target
   WeightMatrix source_weights_;  // pooled source vertices x joints; empty without a skin
   std::vector<PieceMotion> piece_motions_;
   std::vector<PiecePlan> plans_;
