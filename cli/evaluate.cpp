@@ -152,8 +152,8 @@ void run(const Arguments& arguments, const Common& common) {
       throw;
     }
   }();
-  std::string text = fmt::format("{}: {} frames of {} vertices\n", arguments.output.string(), written.frames,
-                                 written.vertices);
+  std::string text = fmt::format("{}: {} frame{} of {} vertices\n", arguments.output.string(), written.frames,
+                                 written.frames == 1 ? "" : "s", written.vertices);
   if (written.seconds > 0)
     text += fmt::format("  evaluated in {:.3g} ms ({})\n", 1e3 * written.seconds, written.instructions);
   if (arguments.compact)

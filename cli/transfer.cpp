@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <system_error>
 
@@ -86,8 +87,11 @@ std::string as_text(const TransferResult& result, const std::string& output) {
       fmt::format("deltas: {} ({:.0f} % warp; contacts {:.2f} over {} shapes, stretch {:.3f}): {}\n",
                   name_of(report.deltas.model), 100 * report.deltas.warp_share, report.deltas.contact_ratio,
                   report.deltas.contact_shapes, report.deltas.stretch, report.deltas.reason);
+  std::map<std::string, int> pieces;
   for (const PieceReport& piece : report.pieces)
-    text += fmt::format("piece {} ({}): moves with {}\n", piece.piece, piece.kind, piece.way);
+    ++pieces[fmt::format("{} ({}): moves with {}", piece.piece, piece.kind, piece.way)];
+  for (const auto& [piece, count] : pieces)
+    text += count == 1 ? fmt::format("piece {}\n", piece) : fmt::format("{} pieces of {}\n", count, piece);
   for (const TransferWarning& warning : report.warnings)
     text += fmt::format("warning: {}; {}\n", warning.what, warning.remedy);
   return text;

@@ -8,6 +8,7 @@
 #include <limits>
 #include <numbers>
 
+#include "character/objects_in_code.h"
 #include "mien/core/error.h"
 
 namespace mien {
@@ -149,6 +150,31 @@ TEST(Tracks, FollowJointsAndSurfacePoints) {
   second.vertex = 1;
   const PointTracks surface = track_surface(character, clip, {0, 1}, {first, second});
   EXPECT_THAT(relative_deformation(surface, {0, 1}), ElementsAre(0, DoubleNear(1, 1e-7)));
+}
+
+TEST(Tracks, FollowControlPointsOfObjects) {
+  Character character = test::head_and_lip();
+  character.objects = {test::line()};
+  Channel pull;
+  pull.property = Channel::Property::object_control;
+  pull.object = 0;
+  pull.control = 1;
+  pull.times = {0, 1};
+  pull.values = {0, 0, 0, 1, 0, 0};
+  Channel turn;  // the head carries both control points
+  turn.property = Channel::Property::rotation;
+  turn.node = 1;
+  turn.times = {0, 1};
+  turn.values = {0, 0, 0, 1, 0, 0.6f, 0, 0.8f};
+  const Clip clip{"pull", {pull, turn}, {}};
+  const PointTracks tracks = track_controls(character, clip, {0, 0.5, 1}, {{0, 0}, {0, 1}});
+  EXPECT_THAT(relative_deformation(tracks, {0, 1}),
+              ElementsAre(DoubleNear(0, 1e-9), DoubleNear(0.25, 1e-6), DoubleNear(0.5, 1e-6)));
+  EXPECT_GT((tracks.frames[2].row(0) - tracks.rest.row(0)).norm(), 0.1);
+  EXPECT_THAT(error_of([&] {
+                track_controls(character, clip, {0}, {{0, 2}});
+              }),
+              HasSubstr("control point 2 of object 0: does not exist"));
 }
 
 /// Four points on a line; the second and the fourth swing in time with each other, the third not at all.

@@ -7,8 +7,10 @@
 #include "mien/character/sliders.h"
 #include "mien/core/error.h"
 #include "mien/core/parallel.h"
+#include "mien/deform/influence.h"
 #include "mien/evaluate/constraints.h"
 #include "mien/evaluate/evaluate.h"
+#include "mien/evaluate/point_evaluator.h"
 
 namespace mien {
 namespace {
@@ -56,6 +58,18 @@ std::vector<Candidate> ranked_pairs(const PointTracks& tracks, double least_leng
   std::stable_sort(all.begin(), all.end(),
                    [](const Candidate& x, const Candidate& y) { return x.range > y.range; });
   return all;
+}
+
+/// `places`: a pose's points.
+template <class Places>
+PointTracks tracks_of(const Character& character, const Clip& clip, const std::vector<double>& seconds,
+                      const Places& places) {
+  PointTracks tracks{places(rest_pose(character)), std::vector<PointsD>(seconds.size())};
+  parallel_for(seconds.size(), 16, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k)
+      tracks.frames[k] = places(sample_clip(character, clip, seconds[k]));
+  });
+  return tracks;
 }
 
 int node_named(const Character& character, const std::string& name) {
@@ -130,31 +144,40 @@ PointTracks track_nodes(const Character& character, const Clip& clip, const std:
           model[static_cast<std::size_t>(nodes[n])].topRightCorner<3, 1>().transpose();
     return points;
   };
-  PointTracks tracks{places(rest_pose(character)), std::vector<PointsD>(seconds.size())};
-  parallel_for(seconds.size(), 16, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t k = begin; k < end; ++k)
-      tracks.frames[k] = places(sample_clip(character, clip, seconds[k]));
-  });
-  return tracks;
+  return tracks_of(character, clip, seconds, places);
+}
+
+PointTracks track_controls(const Character& character, const Clip& clip, const std::vector<double>& seconds,
+                           const std::vector<ControlPoint>& points) {
+  for (const ControlPoint& point : points)
+    if (point.object < 0 || point.object >= static_cast<int>(character.objects.size()) || point.control < 0 ||
+        point.control >= character.objects[static_cast<std::size_t>(point.object)].controls.rows())
+      throw invalid_input(
+          "control point " + std::to_string(point.control) + " of object " + std::to_string(point.object),
+          "does not exist", "one of the character's");
+  const InfluenceField field(character, posed_matrices(character, rest_pose(character)));
+  const auto places = [&](const Pose& pose) {
+    const std::vector<Eigen::Matrix4d> model = posed_matrices(character, pose);
+    const std::vector<ObjectPose> objects = field.pose(model, pose.shape_weights, pose.objects);
+    std::vector<PointsD> controls;
+    for (int o = 0; o < field.object_count(); ++o)
+      controls.push_back(field.place(o, objects[static_cast<std::size_t>(o)], model));
+    PointsD found(static_cast<Eigen::Index>(points.size()), 3);
+    for (std::size_t i = 0; i < points.size(); ++i)
+      found.row(static_cast<Eigen::Index>(i)) =
+          controls[static_cast<std::size_t>(points[i].object)].row(points[i].control);
+    return found;
+  };
+  return tracks_of(character, clip, seconds, places);
 }
 
 PointTracks track_surface(const Character& character, const Clip& clip, const std::vector<double>& seconds,
                           const std::vector<SurfacePoint>& points) {
-  const auto places = [&](const Pose& pose) {
-    const std::vector<Points> posed = evaluate(character, pose);
-    PointsD found(static_cast<Eigen::Index>(points.size()), 3);
-    for (std::size_t i = 0; i < points.size(); ++i) {
-      const auto part = static_cast<std::size_t>(points[i].part);
-      found.row(static_cast<Eigen::Index>(i)) =
-          position_of(character.parts[part].mesh, posed[part], points[i]).transpose();
-    }
-    return found;
-  };
-  PointTracks tracks{places(rest_pose(character)), std::vector<PointsD>(seconds.size())};
-  parallel_for(seconds.size(), 8, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t k = begin; k < end; ++k)
-      tracks.frames[k] = places(sample_clip(character, clip, seconds[k]));
-  });
+  PointEvaluator evaluator(character, points);
+  PointTracks tracks;
+  evaluator.positions(rest_pose(character), tracks.rest);
+  for (const double second : seconds)
+    evaluator.positions(sample_clip(character, clip, second), tracks.frames.emplace_back());
   return tracks;
 }
 

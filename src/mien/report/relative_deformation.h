@@ -40,7 +40,17 @@ std::vector<double> sample_times(const Clip& clip, double rate = 30, int most = 
 PointTracks track_nodes(const Character& character, const Clip& clip, const std::vector<double>& seconds,
                         const std::vector<int>& nodes);
 
-/// The same for points on the surface, after shapes and skinning. Cost: an evaluation a moment.
+/// A control point of an influence object.
+struct ControlPoint {
+  int object = 0, control = 0;
+};
+
+/// The same for control points of influence objects, where the nodes that carry them take them. Cost: a pose a moment.
+///   throws  invalid_input: an object or control point out of range; a clip that `sample_clip` refuses
+PointTracks track_controls(const Character& character, const Clip& clip, const std::vector<double>& seconds,
+                           const std::vector<ControlPoint>& points);
+
+/// The same for points on the surface, after shapes, objects and skinning. Cost: these points' evaluation a moment.
 PointTracks track_surface(const Character& character, const Clip& clip, const std::vector<double>& seconds,
                           const std::vector<SurfacePoint>& points);
 

@@ -45,7 +45,7 @@ struct CurveRow {
 struct ClipRows {
   std::string name;
   std::vector<double> seconds;
-  std::vector<CurveRow> joints, surface;
+  std::vector<CurveRow> joints, objects, surface;
 };
 
 /// Everything that a page says in figures.

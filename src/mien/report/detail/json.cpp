@@ -52,6 +52,7 @@ Json clips_of(const Data& data) {
     rows.push_back({{"name", clip.name},
                     {"seconds", clip.seconds},
                     {"joints", curves_of(clip.joints)},
+                    {"objects", curves_of(clip.objects)},
                     {"surface", curves_of(clip.surface)}});
   return rows;
 }

@@ -16,7 +16,7 @@ constexpr std::size_t curves_a_kind = 4;
 /// Pairs looked at: some of the source's telling pairs lie too close on the target.
 constexpr int candidates = 12;
 /// Of the face's size: epsilon of closer points (lips that touch) is large and says little.
-constexpr double least_joint_length = 0.05, least_landmark_length = 0.08;
+constexpr double least_joint_length = 0.05, least_control_length = 0.05, least_landmark_length = 0.08;
 /// A smaller difference between a copied and a transferred clip is rounding.
 constexpr double same_curve = 1e-4;
 
@@ -76,6 +76,29 @@ Followed follow_joints(const ReportInput& input, const Clips& clips) {
   return followed;
 }
 
+/// Control points of the objects that both have.
+Followed follow_objects(const ReportInput& input, const Clips& clips) {
+  const Character &source = input.source, &target = input.result.character;
+  Followed followed;
+  std::vector<ControlPoint> from, to;
+  for (std::size_t o = 0; o < source.objects.size(); ++o) {
+    const InfluenceObject& object = source.objects[o];
+    const int same = find_object(target, object.name);
+    if (same < 0 || target.objects[at(same)].controls.rows() != object.controls.rows()) continue;
+    for (int c = 0; c < static_cast<int>(object.controls.rows()); ++c) {
+      std::string name = object.name;
+      if (object.controls.rows() > 1) name.append(" ").append(std::to_string(c));
+      followed.names.push_back(std::move(name));
+      from.push_back({static_cast<int>(o), c});
+      to.push_back({same, c});
+    }
+  }
+  followed.source = track_controls(source, clips.source, clips.seconds, from);
+  followed.target = track_controls(target, clips.target, clips.seconds, to);
+  followed.copied = track_controls(target, clips.copied, clips.seconds, to);
+  return followed;
+}
+
 Followed follow_landmarks(const ReportInput& input, const Clips& clips) {
   const LandmarkPairs& pairs = input.result.report.pairs;
   Followed followed;
@@ -100,11 +123,12 @@ std::vector<ClipRows> measure_clips(const ReportInput& input) {
                unit = target_unit / input.result.report.similarity.scale;
   for (std::size_t c = 0; c < std::min({clips.size(), carried.size(), most_clips}); ++c) {
     const Clip copied = copy_by_name(input.source, clips[c], input.result.character);
-    ClipRows clip{clips[c].name, sample_times(clips[c]), {}, {}};
+    ClipRows clip{clips[c].name, sample_times(clips[c]), {}, {}, {}};
     if (clip.seconds.size() < 2) continue;
     const Clips three{clips[c], carried[c], copied, clip.seconds};
     if (!input.source.skins.empty() && !input.result.character.skins.empty())
       clip.joints = curves_of(follow_joints(input, three), least_joint_length, unit, target_unit);
+    clip.objects = curves_of(follow_objects(input, three), least_control_length, unit, target_unit);
     clip.surface = curves_of(follow_landmarks(input, three), least_landmark_length, unit, target_unit);
     rows.push_back(std::move(clip));
   }

@@ -139,10 +139,12 @@ std::string own_steps(const PageInput& page) {
 std::string clips_section(const PageInput& page) {
   std::string curves;
   for (const ClipRows& clip : page.data.clips) {
-    const std::string one =
-        curves_of(clip, clip.joints, "joints") + curves_of(clip, clip.surface, "landmarks on the surface");
+    const std::string one = curves_of(clip, clip.joints, "joints") +
+                            curves_of(clip, clip.objects, "control points of influence objects") +
+                            curves_of(clip, clip.surface, "landmarks on the surface");
     curves += one;
-    if (!one.empty() && !copy_differs(clip.joints) && !copy_differs(clip.surface))
+    if (!one.empty() && !copy_differs(clip.joints) && !copy_differs(clip.objects) &&
+        !copy_differs(clip.surface))
       curves +=
           "<p class=\"soft\">Copying this clip unchanged gives the same: it holds rotations and shape "
           "weights alone, which have no length.</p>\n";
