@@ -40,8 +40,10 @@ std::string text_of(const FoundLandmarks& found) {
 }
 
 nlohmann::json json_of(const FoundLandmarks& found) {
-  nlohmann::json confidence = nlohmann::json::object(), doubtful = nlohmann::json::array();
+  nlohmann::json confidence = nlohmann::json::object(), curves = nlohmann::json::array(),
+                 doubtful = nlohmann::json::array();
   for (const FoundLandmark& one : found.landmarks) confidence[one.landmark.name] = one.confidence;
+  for (const LandmarkCurve& curve : found.curves) curves.push_back(curve.name);
   for (const DoubtfulPoint& point : found.doubtful)
     doubtful.push_back({{"name", point.name},
                         {"distance", point.distance},
@@ -53,6 +55,7 @@ nlohmann::json json_of(const FoundLandmarks& found) {
           {"likeness", found.likeness},
           {"stretch", found.stretch},
           {"confidence", confidence},
+          {"curves", curves},
           {"doubtful", doubtful}};
 }
 

@@ -35,10 +35,10 @@ void complete(const Side& side, const Character& like, FindLandmarksOptions opti
   options.given = character.landmarks;
   FoundLandmarks found = find_landmarks_of(side.file, character, like, options);
   character.landmarks = found.points();
-  for (LandmarkCurve& curve : found.curves)
+  for (const LandmarkCurve& curve : found.curves)
     if (std::none_of(character.curves.begin(), character.curves.end(),
                      [&](const LandmarkCurve& own) { return own.name == curve.name; }))
-      character.curves.push_back(std::move(curve));
+      character.curves.push_back(curve);
   sides.push_back({side.file, std::move(found)});
 }
 
