@@ -42,6 +42,18 @@ void check_binding(const Character& character, const Wire& wire, const WireBindi
   }
 }
 
+/// x, y, z and a zero, worked on together.
+using Lanes = float __attribute__((vector_size(16), may_alias));
+
+const Lanes* lanes(const Eigen::Matrix4Xf& columns, int column) {
+  return reinterpret_cast<const Lanes*>(columns.data()) + column;
+}
+
+/// y, z, x: a x b = shifted(a shifted(b) - shifted(a) b).
+Lanes shifted(const Lanes& v) {
+  return __builtin_shufflevector(v, v, 1, 2, 0, 3);
+}
+
 /// f^k, without a logarithm for the usual k.
 double power(double falloff, double localizing) {
   return localizing == 3 ? falloff * falloff * falloff : std::pow(falloff, localizing);
@@ -200,6 +212,31 @@ void WireField::check(std::span<const WireMove> moves) const {
   }
 }
 
+/// The sums of moves: a column a control point and a turn, and what each wire does.
+struct WireField::Drive {
+  Eigen::Matrix4Xf controls, turns;
+  std::vector<float> scales;
+  std::vector<char> active;
+};
+
+WireField::Drive WireField::drive_of(std::span<const WireMove> moves) const {
+  const Size& last = sizes_.back();
+  Drive drive{Eigen::Matrix4Xf::Zero(4, last.control_begin + last.controls),
+              Eigen::Matrix4Xf::Zero(4, last.turn_begin + last.turns + 4),
+              std::vector<float>(sizes_.size(), 0), std::vector<char>(sizes_.size(), 0)};
+  for (const WireMove& move : moves) {
+    const Size& size = sizes_[move.wire];
+    drive.active[move.wire] = 1;
+    drive.scales[move.wire] += static_cast<float>(move.scale);
+    if (move.controls.rows() > 0)
+      drive.controls.block(0, size.control_begin, 3, size.controls) +=
+          move.controls.transpose().cast<float>();
+    if (move.turns.rows() > 0)
+      drive.turns.block(0, size.turn_begin, 3, size.turns) += move.turns.transpose().cast<float>();
+  }
+  return drive;
+}
+
 void WireField::add(int part, std::span<const WireMove> moves, PointsD& positions) const {
   check(moves);
   if (part < 0 || part >= static_cast<int>(parts_.size()))
@@ -210,39 +247,30 @@ void WireField::add(int part, std::span<const WireMove> moves, PointsD& position
     throw invalid_input("part " + std::to_string(part),
                         "has " + std::to_string(positions.rows()) + " positions", "one a vertex");
   if (moves.empty() || sizes_.empty()) return;
-  const Size& last = sizes_.back();
-  Eigen::Matrix3Xf controls = Eigen::Matrix3Xf::Zero(3, last.control_begin + last.controls);
-  Eigen::Matrix3Xf turns = Eigen::Matrix3Xf::Zero(3, last.turn_begin + last.turns + 4);
-  std::vector<float> scales(sizes_.size(), 0);
-  std::vector<char> active(sizes_.size(), 0);
-  for (const WireMove& move : moves) {
-    const Size& size = sizes_[move.wire];
-    active[move.wire] = 1;
-    scales[move.wire] += static_cast<float>(move.scale);
-    if (move.controls.rows() > 0)
-      controls.middleCols(size.control_begin, size.controls) += move.controls.transpose().cast<float>();
-    if (move.turns.rows() > 0)
-      turns.middleCols(size.turn_begin, size.turns) += move.turns.transpose().cast<float>();
-  }
+  const Drive drive = drive_of(moves);
   const bool same_space = to_part_[part] == Eigen::Matrix3d::Identity();
   for (std::size_t row = 0; row < rows.vertices.size(); ++row) {
-    Eigen::Vector3f sum = Eigen::Vector3f::Zero();
+    Lanes sum{}, crossed{};
     bool moved = false;
     for (int e = rows.offsets[row]; e < rows.offsets[row + 1]; ++e) {
       const Entry& entry = rows.entries[e];
-      if (!active[entry.wire]) continue;
+      if (!drive.active[entry.wire]) continue;
       moved = true;
-      const auto q = controls.middleCols<4>(sizes_[entry.wire].control_begin + entry.first);
-      const auto omega = turns.middleCols<4>(sizes_[entry.wire].turn_begin + entry.turn_first);
-      Eigen::Vector3f turn = Eigen::Vector3f::Zero();
+      const Size& size = sizes_[entry.wire];
+      const Lanes* const q = lanes(drive.controls, size.control_begin + entry.first);
+      const Lanes* const omega = lanes(drive.turns, size.turn_begin + entry.turn_first);
+      Lanes turn{};
       for (int a = 0; a < 4; ++a) {
-        sum += entry.basis[a] * q.col(a);
-        turn += entry.turn_basis[a] * omega.col(a);
+        sum += entry.basis[a] * q[a];
+        turn += entry.turn_basis[a] * omega[a];
       }
-      sum += scales[entry.wire] * entry.offset + turn.cross(entry.offset);
+      const Lanes r{entry.offset[0], entry.offset[1], entry.offset[2], 0};
+      sum += drive.scales[entry.wire] * r;
+      crossed += turn * shifted(r) - shifted(turn) * r;
     }
     if (!moved) continue;
-    const Eigen::Vector3d add = sum.cast<double>();
+    sum += shifted(crossed);
+    const Eigen::Vector3d add(sum[0], sum[1], sum[2]);
     positions.row(rows.vertices[row]) += (same_space ? add : to_part_[part] * add).transpose();
   }
 }

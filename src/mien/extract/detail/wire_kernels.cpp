@@ -8,6 +8,7 @@ namespace mien::detail {
 namespace {
 
 using Four = double __attribute__((vector_size(32), aligned(8), may_alias));
+using FourFloats = float __attribute__((vector_size(16), aligned(4), may_alias));
 using Eight = double __attribute__((vector_size(64), aligned(8), may_alias));
 
 #define MIEN_INLINE inline __attribute__((always_inline))
@@ -64,20 +65,27 @@ MIEN_INLINE void add_products_body(const WireRow* rows, const short* firsts, std
   }
 }
 
+MIEN_INLINE Four widened(const float* numbers) {
+  return __builtin_convertvector(*reinterpret_cast<const FourFloats*>(numbers), Four);
+}
+
+MIEN_INLINE void add_to_span(const Four& basis, double x, double y, double z, WireSpan& span) {
+  at<Four>(span.x) += basis * x;
+  at<Four>(span.y) += basis * y;
+  at<Four>(span.z) += basis * z;
+}
+
 MIEN_INLINE void add_right_body(std::span<const WireField::Entry> entries, const WireSlots* slots,
-                                const double* displacement, double* sums) {
+                                const double* displacement, const WireSums& sums) {
   const double x = displacement[0], y = displacement[1], z = displacement[2];
-  const Four d{x, y, z, 0};
   for (const WireField::Entry& entry : entries) {
     const WireSlots& slot = slots[entry.wire];
-    double* const controls = sums + 4L * (slot.controls + entry.first);
-    for (int a = 0; a < 4; ++a) at<Four>(controls + 4 * a) += static_cast<double>(entry.basis[a]) * d;
+    add_to_span(widened(entry.basis), x, y, z, sums.spans[slot.controls + entry.first]);
     const double r0 = entry.offset[0], r1 = entry.offset[1], r2 = entry.offset[2];
-    sums[4L * slot.sigma] += r0 * x + r1 * y + r2 * z;
-    if (!slot.turns) continue;
-    const Four moment{r1 * z - r2 * y, r2 * x - r0 * z, r0 * y - r1 * x, 0};
-    double* const turns = sums + 4L * (slot.sigma + 1 + entry.turn_first);
-    for (int a = 0; a < 4; ++a) at<Four>(turns + 4 * a) += static_cast<double>(entry.turn_basis[a]) * moment;
+    sums.sigmas[entry.wire] += r0 * x + r1 * y + r2 * z;
+    if (slot.turns >= 0)
+      add_to_span(widened(entry.turn_basis), r1 * z - r2 * y, r2 * x - r0 * z, r0 * y - r1 * x,
+                  sums.spans[slot.turns + entry.turn_first]);
   }
 }
 
@@ -86,7 +94,7 @@ void add_products(const WireRow* rows, const short* firsts, std::span<const Wire
   add_products_body<Four, 3>(rows, firsts, pairs, block);
 }
 void add_right(std::span<const WireField::Entry> entries, const WireSlots* slots, const double* displacement,
-               double* sums) {
+               const WireSums& sums) {
   add_right_body(entries, slots, displacement, sums);
 }
 
@@ -101,7 +109,7 @@ __attribute__((target("avx512f,avx512dq,avx512vl,fma"))) void add_products_avx51
   add_products_body<Eight, 15>(rows, firsts, pairs, block);
 }
 MIEN_AVX2 void add_right_avx2(std::span<const WireField::Entry> entries, const WireSlots* slots,
-                              const double* displacement, double* sums) {
+                              const double* displacement, const WireSums& sums) {
   add_right_body(entries, slots, displacement, sums);
 }
 #endif

@@ -31,19 +31,27 @@ struct WirePair {
   int first = 0, second = 0;
 };
 
-/// Where a right-hand side gathers, in rows of four numbers: per wire its first control point, its sigma, and whether it turns.
+/// Where a right-hand side gathers: x of four control points, or turns, that meet at a vertex, then y, then z.
+struct alignas(32) WireSpan {
+  double x[4] = {}, y[4] = {}, z[4] = {};
+};
+/// Which spans are a wire's.
 struct WireSlots {
-  int controls = 0, sigma = 0;
-  bool turns = false;
+  int controls = 0;  ///< the span of its first four control points; the next one begins a control point later
+  int turns = -1;    ///< the same of its turns; -1: it does not turn
+};
+struct WireSums {
+  WireSpan* spans;
+  double* sigmas;  ///< one a wire
 };
 
 struct WireKernels {
   /// Adds the products of the pairs to the block; `firsts`: first control point of each row.
   void (*add_products)(const WireRow* rows, const short* firsts, std::span<const WirePair> pairs,
                        const WireBlock& block);
-  /// sums[4 i ...] += for each entry: basis d at its control points, (r . d) at sigma, C (r x d) at its turns.
+  /// For each entry of one vertex: B d to the span of its control points, r . d to its wire's sigma, C (r x d) to the span of its turns.
   void (*add_right)(std::span<const WireField::Entry> entries, const WireSlots* slots,
-                    const double* displacement, double* sums);
+                    const double* displacement, const WireSums& sums);
 };
 
 const WireKernels& wire_kernels();

@@ -1,6 +1,6 @@
 // Columns of a turn are e x r. Their products with everything else are sums of c1 c2 r1 r2' over the vertices, so those moments
-// are gathered first, wire by wire and for all that share vertices with it, and spread over the unknowns afterwards: a third of the
-// work of multiplying the columns themselves.
+// are gathered first, for every two wires that share vertices, and spread over the unknowns afterwards: a third of the work of multiplying
+// the columns themselves. A few dozen vertices at a time, whose rows stay in the cache: their neighbours are reached by the same wires.
 #include "mien/extract/detail/wire_system.h"
 
 #include <Eigen/Geometry>
@@ -12,128 +12,175 @@
 namespace mien::detail {
 namespace {
 
-using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-/// Where a coupled function's three columns of Z begin.
-Eigen::Index moment_column(const WireColumns& columns, int coupled) {
-  return columns.control_count + 3 * static_cast<Eigen::Index>(coupled);
-}
+constexpr std::size_t vertices_together = 64;
 
-/// The field's entries as rows, and the segment of each: a wire and the first of the four turns that meet there.
-struct Rows {
-  Rows(const WireField& field, const WireColumns& columns, const std::vector<std::vector<float>>& weights);
-  std::vector<WireRow> rows;
-  std::vector<short> firsts;       ///< per row: first of its four control points
-  std::vector<int> segments, end;  ///< per row: its segment; where the entries of its vertex end
-  struct Segment {
-    int wire = 0, turn_first = 0;
-    std::vector<int> rows;
-  };
-  std::vector<Segment> all;
+/// A wire and the first of the four turns that meet at a vertex.
+struct Segment {
+  int wire = 0, turn_first = 0;
 };
 
-Rows::Rows(const WireField& field, const WireColumns& columns,
-           const std::vector<std::vector<float>>& weights) {
-  std::vector<int> first_segment;
+/// The first unknown of a segment's coupled functions: sigma, then its four turns.
+int unknown_of(const WireColumns& columns, const Segment& segment, int function) {
+  const int sigma = columns.coupled[segment.wire];
+  return columns.unknowns[function == 0 ? sigma : sigma + segment.turn_first + function];
+}
+
+/// Sums of products of two segments' rows, and the pairs of rows that wait to be added.
+struct Block {
+  Block(const WireColumns& columns, const Segment& a, const Segment& b, bool with_itself)
+      : first(a),
+        second(b),
+        same(with_itself),
+        controls_first(columns.control_count_of(a.wire)),
+        controls_second(columns.control_count_of(b.wire)),
+        sums(static_cast<std::size_t>(256 + 16 * (controls_first + controls_second) +
+                                      controls_first * controls_second),
+             0) {}
+
+  WireBlock parts() {
+    double* const cross = sums.data() + 256;
+    return {sums.data(), cross, cross + 16L * controls_first,
+            cross + 16L * (controls_first + controls_second), controls_second};
+  }
+
+  Segment first, second;
+  bool same;  ///< a segment with itself
+  int controls_first, controls_second;
+  std::vector<double> sums;  ///< as `parts` takes them apart
+  std::vector<WirePair> waiting;
+};
+
+/// Z'WZ, block by block.
+class Moments {
+ public:
+  Moments(const WireField& field, const WireColumns& columns, const std::vector<std::vector<float>>& weights);
+  std::vector<Block>& blocks() { return blocks_; }
+
+ private:
+  void add_vertex(const WireField::PartRows& part, std::size_t vertex, float weight);
+  void add_waiting();
+  Block& block_of(int first, int second);
+
+  const WireColumns& columns_;
+  std::vector<Segment> segments_;
+  std::vector<int> first_segment_;  ///< per wire
+  std::vector<int> block_at_;       ///< per two segments: one of `blocks_`, or -1
+  std::vector<Block> blocks_;
+  std::vector<int> touched_;  ///< blocks with pairs that wait
+  std::vector<WireRow> rows_;
+  std::vector<short> firsts_;  ///< per row: first of its four control points
+  std::vector<int> row_segments_;
+};
+
+Moments::Moments(const WireField& field, const WireColumns& columns,
+                 const std::vector<std::vector<float>>& weights)
+    : columns_(columns) {
   for (std::size_t w = 0; w < columns.turns.size(); ++w) {
-    first_segment.push_back(static_cast<int>(all.size()));
+    first_segment_.push_back(static_cast<int>(segments_.size()));
     const int count = std::max(1, columns.turn_count_of(static_cast<int>(w)) - 3);
-    for (int t = 0; t < count; ++t) all.push_back({static_cast<int>(w), t, {}});
+    for (int t = 0; t < count; ++t) segments_.push_back({static_cast<int>(w), t});
   }
-  std::size_t count = 0;
-  for (const WireField::PartRows& part : field.parts()) count += part.entries.size();
-  rows.reserve(count);
+  block_at_.assign(segments_.size() * segments_.size(), -1);
   for (std::size_t part = 0; part < weights.size(); ++part) {
-    const WireField::PartRows& source = field.parts()[part];
-    for (std::size_t v = 0; v < source.vertices.size(); ++v) {
-      const double root = std::sqrt(static_cast<double>(weights[part][v]));
-      const int count = source.offsets[v + 1] - source.offsets[v];
-      const int last = static_cast<int>(rows.size()) + count;
-      for (int e = source.offsets[v]; e < source.offsets[v + 1]; ++e) {
-        const WireField::Entry& entry = source.entries[e];
-        WireRow& row = rows.emplace_back();
-        for (int a = 0; a < 4; ++a) row.basis[a] = root * entry.basis[a];
-        for (int k = 0; k < 3; ++k) row.coupled[k] = root * entry.offset[k];
-        for (int a = 0; a < 4; ++a)
-          for (int k = 0; k < 3; ++k) row.coupled[3 + 3 * a + k] = entry.turn_basis[a] * row.coupled[k];
-        row.coupled[15] = 0;
-        firsts.push_back(entry.first);
-        segments.push_back(first_segment[entry.wire] + entry.turn_first);
-        all[segments.back()].rows.push_back(static_cast<int>(rows.size()) - 1);
-        end.push_back(last);
-      }
+    const std::size_t count = field.parts()[part].vertices.size();
+    for (std::size_t v = 0; v < count; ++v) {
+      add_vertex(field.parts()[part], v, weights[part][v]);
+      if ((v + 1) % vertices_together == 0 || v + 1 == count) add_waiting();
     }
   }
 }
 
-/// Adds one pair of segments to Z'WZ, on and above the diagonal of each of its blocks.
-void add_block(const Rows& rows, int first, int second, const WireColumns& columns,
-               std::span<const WirePair> pairs, Matrix& moments) {
-  const Rows::Segment &a = rows.all[first], &b = rows.all[second];
-  const int controls_a = columns.control_count_of(a.wire), controls_b = columns.control_count_of(b.wire);
-  Matrix coupled = Matrix::Zero(16, 16), first_coupled = Matrix::Zero(controls_a, 16),
-         second_coupled = Matrix::Zero(controls_b, 16), controls = Matrix::Zero(controls_a, controls_b);
-  wire_kernels().add_products(
-      rows.rows.data(), rows.firsts.data(), pairs,
-      {coupled.data(), first_coupled.data(), second_coupled.data(), controls.data(), controls.cols()});
-  const Eigen::Index at_a = columns.controls[a.wire], at_b = columns.controls[b.wire];
-  moments.block(at_a, at_b, controls_a, controls_b) += controls;
-  const auto column_of = [&](const Rows::Segment& segment, int function) {
-    const int sigma = columns.coupled[segment.wire];
-    return moment_column(columns, function == 0 ? sigma : sigma + segment.turn_first + function);
-  };
-  const int functions_a = columns.turns[a.wire] + 1, functions_b = columns.turns[b.wire] + 1;
-  for (int f = 0; f < functions_b; ++f)
-    moments.block(at_a, column_of(b, f), controls_a, 3) += first_coupled.middleCols(3 * f, 3);
-  if (first != second)
-    for (int f = 0; f < functions_a; ++f)
-      moments.block(at_b, column_of(a, f), controls_b, 3) += second_coupled.middleCols(3 * f, 3);
-  for (int f = 0; f < functions_a; ++f)
-    for (int g = 0; g < functions_b; ++g) {
-      const Eigen::Index row = column_of(a, f), column = column_of(b, g);
-      if (row <= column) moments.block<3, 3>(row, column) += coupled.block<3, 3>(3 * f, 3 * g);
-    }
-}
-
-/// Z'WZ, on and above the diagonal.
-Matrix moments_of(const WireField& field, const WireColumns& columns,
-                  const std::vector<std::vector<float>>& weights) {
-  const Eigen::Index size = moment_column(columns, columns.coupled_count);
-  Matrix moments = Matrix::Zero(size, size);
-  const Rows rows(field, columns, weights);
-  std::vector<std::vector<WirePair>> pairs(rows.all.size());
-  for (std::size_t segment = 0; segment < rows.all.size(); ++segment) {
-    for (const int row : rows.all[segment].rows)
-      for (int other = row; other < rows.end[row]; ++other)
-        pairs[rows.segments[other]].push_back({row, other});
-    for (std::size_t other = segment; other < pairs.size(); ++other) {
-      if (pairs[other].empty()) continue;
-      add_block(rows, static_cast<int>(segment), static_cast<int>(other), columns, pairs[other], moments);
-      pairs[other].clear();
-    }
+Block& Moments::block_of(int first, int second) {
+  int& at = block_at_[static_cast<std::size_t>(first) * segments_.size() + second];
+  if (at < 0) {
+    at = static_cast<int>(blocks_.size());
+    blocks_.emplace_back(columns_, segments_[first], segments_[second], first == second);
   }
-  return moments;
+  if (blocks_[at].waiting.empty()) touched_.push_back(at);
+  return blocks_[at];
 }
 
-/// e_k x r for sums of r: #3 x 3, row `axis`, column k.
+void Moments::add_vertex(const WireField::PartRows& part, std::size_t vertex, float weight) {
+  const double root = std::sqrt(static_cast<double>(weight));
+  for (int e = part.offsets[vertex]; e < part.offsets[vertex + 1]; ++e) {
+    const WireField::Entry& entry = part.entries[e];
+    WireRow& row = rows_.emplace_back();
+    for (int a = 0; a < 4; ++a) row.basis[a] = root * entry.basis[a];
+    for (int k = 0; k < 3; ++k) row.coupled[k] = root * entry.offset[k];
+    for (int a = 0; a < 4; ++a)
+      for (int k = 0; k < 3; ++k) row.coupled[3 + 3 * a + k] = entry.turn_basis[a] * row.coupled[k];
+    row.coupled[15] = 0;
+    firsts_.push_back(entry.first);
+    row_segments_.push_back(first_segment_[entry.wire] + entry.turn_first);
+  }
+  const int end = static_cast<int>(rows_.size()),
+            begin = end - (part.offsets[vertex + 1] - part.offsets[vertex]);
+  for (int i = begin; i < end; ++i)
+    for (int j = i; j < end; ++j) block_of(row_segments_[i], row_segments_[j]).waiting.push_back({i, j});
+}
+
+void Moments::add_waiting() {
+  for (const int at : touched_) {
+    Block& block = blocks_[at];
+    wire_kernels().add_products(rows_.data(), firsts_.data(), block.waiting, block.parts());
+    block.waiting.clear();
+  }
+  touched_.clear();
+  rows_.clear();
+  firsts_.clear();
+  row_segments_.clear();
+}
+
+/// e_k x r for sums of r: 3 x 3, row `axis`, column k.
 Eigen::Matrix3d turned(const Eigen::Vector3d& r) {
   Eigen::Matrix3d columns;
   columns << 0, r.z(), -r.y(), -r.z(), 0, r.x(), r.y(), -r.x(), 0;
   return columns;
 }
 
-/// What the products of two coupled functions' columns are, m being the sum of r1 r2'.
-void set_coupled(const Eigen::Matrix3d& m, bool first_turns, bool second_turns, Eigen::Index row,
+/// Control points' products with a segment's coupled functions (`sums`: #count x 16) to E.
+void add_cross(const double* sums, int control, int count, const WireColumns& columns, const Segment& segment,
+               Eigen::MatrixXd& cross) {
+  const Eigen::Index q = columns.control_count;
+  for (int f = 0; f <= columns.turns[segment.wire]; ++f) {
+    const int to = unknown_of(columns, segment, f);
+    for (int l = 0; l < count; ++l) {
+      const Eigen::Map<const Eigen::Vector3d> r(sums + 16L * l + 3L * f);
+      for (int axis = 0; axis < 3; ++axis) {
+        if (f > 0)
+          cross.row(axis * q + control + l).segment<3>(to) += turned(r).row(axis);
+        else
+          cross(axis * q + control + l, to) += r[axis];
+      }
+    }
+  }
+}
+
+/// The products of two coupled functions' columns, `m` being the sum of r1 r2'.
+void add_coupled(const Eigen::Matrix3d& m, bool first_turns, bool second_turns, Eigen::Index row,
                  Eigen::Index column, Eigen::MatrixXd& coupled) {
   const Eigen::Vector3d across(m(1, 2) - m(2, 1), m(2, 0) - m(0, 2), m(0, 1) - m(1, 0));  // r1 x r2
   if (first_turns && second_turns)  // (e_j x r1) . (e_k x r2) = r1 . r2 [j = k] - r2_j r1_k
-    coupled.block<3, 3>(row, column) = m.trace() * Eigen::Matrix3d::Identity() - m.transpose();
+    coupled.block<3, 3>(row, column) += m.trace() * Eigen::Matrix3d::Identity() - m.transpose();
   else if (first_turns)
-    coupled.block<3, 1>(row, column) = across;
+    coupled.block<3, 1>(row, column) += across;
   else if (second_turns)
-    coupled.block<1, 3>(row, column) = -across.transpose();
+    coupled.block<1, 3>(row, column) -= across.transpose();
   else
-    coupled(row, column) = m.trace();
+    coupled(row, column) += m.trace();
+}
+
+/// One block to D, on and above its diagonal.
+void add_coupled(const Block& block, const double* sums, const WireColumns& columns,
+                 Eigen::MatrixXd& coupled) {
+  using Rows = Eigen::Matrix<double, 16, 16, Eigen::RowMajor>;
+  const Eigen::Map<const Rows> all(sums);
+  for (int f = 0; f <= columns.turns[block.first.wire]; ++f)
+    for (int g = block.same ? f : 0; g <= columns.turns[block.second.wire]; ++g)
+      add_coupled(all.block<3, 3>(3 * f, 3 * g), f > 0, g > 0, unknown_of(columns, block.first, f),
+                  unknown_of(columns, block.second, g), coupled);
 }
 
 }  // namespace
@@ -156,28 +203,22 @@ WireColumns::WireColumns(std::span<const Wire> wires) {
 WireSystem::WireSystem(const WireField& field, std::span<const Wire> wires,
                        std::vector<std::vector<float>> weights, double ridge)
     : field_(field), columns_(wires), weights_(std::move(weights)) {
-  const Matrix moments = moments_of(field, columns_, weights_);
-  const int q = columns_.control_count, n = columns_.unknown_count, b = columns_.coupled_count;
-  std::vector<char> turns(b, 1);
-  for (const int sigma : columns_.coupled) turns[sigma] = 0;
-  Eigen::MatrixXd controls = moments.topLeftCorner(q, q), coupled = Eigen::MatrixXd::Zero(n, n),
+  const int q = columns_.control_count, n = columns_.unknown_count;
+  Eigen::MatrixXd controls = Eigen::MatrixXd::Zero(q, q), coupled = Eigen::MatrixXd::Zero(n, n),
                   cross = Eigen::MatrixXd::Zero(3 * q, n);
-  controls.triangularView<Eigen::StrictlyLower>() = controls.transpose();
-  for (int second = 0; second < b; ++second) {
-    const Eigen::Index from = moment_column(columns_, second), to = columns_.unknowns[second];
-    for (int l = 0; l < q; ++l) {
-      const Eigen::Vector3d r = moments.row(l).segment<3>(from).transpose();
-      for (int axis = 0; axis < 3; ++axis) {
-        if (turns[second])
-          cross.row(axis * q + l).segment<3>(to) = turned(r).row(axis);
-        else
-          cross(axis * q + l, to) = r[axis];
-      }
-    }
-    for (int first = 0; first <= second; ++first)
-      set_coupled(moments.block<3, 3>(moment_column(columns_, first), from), turns[first], turns[second],
-                  columns_.unknowns[first], to, coupled);
+  Moments moments(field, columns_, weights_);
+  for (Block& block : moments.blocks()) {
+    const WireBlock sums = block.parts();
+    const int at_first = columns_.controls[block.first.wire],
+              at_second = columns_.controls[block.second.wire];
+    controls.block(at_first, at_second, block.controls_first, block.controls_second) +=
+        Eigen::Map<const RowMajor>(sums.controls, block.controls_first, block.controls_second);
+    add_cross(sums.controls_first, at_first, block.controls_first, columns_, block.second, cross);
+    if (!block.same)
+      add_cross(sums.controls_second, at_second, block.controls_second, columns_, block.first, cross);
+    add_coupled(block, sums.coupled, columns_, coupled);
   }
+  controls = Eigen::MatrixXd(controls.selfadjointView<Eigen::Upper>());
   coupled = Eigen::MatrixXd(coupled.selfadjointView<Eigen::Upper>());
   factor(std::move(controls), std::move(cross), std::move(coupled), ridge);
 }
@@ -208,12 +249,18 @@ WireVectors WireSystem::zero(Eigen::Index expressions) const {
 
 void WireSystem::add(int part, std::span<const int> rows, const PointsD& displacements,
                      Eigen::Index expression, WireVectors& right) const {
-  const int q = columns_.control_count, b = columns_.coupled_count;
   std::vector<WireSlots> slots;
-  for (std::size_t w = 0; w < columns_.controls.size(); ++w)
-    slots.push_back({columns_.controls[w], q + columns_.coupled[w], columns_.turns[w] > 0});
-  std::vector<double> sums(4 * static_cast<std::size_t>(q + b),
-                           0);  // four a control point or coupled function
+  int spans = 0;
+  for (std::size_t w = 0; w < columns_.controls.size(); ++w) {
+    WireSlots& slot = slots.emplace_back();
+    slot.controls = spans;
+    spans += columns_.control_count_of(static_cast<int>(w)) - 3;
+    if (columns_.turns[w] == 0) continue;
+    slot.turns = spans;
+    spans += columns_.turn_count_of(static_cast<int>(w)) - 3;
+  }
+  std::vector<WireSpan> sums(static_cast<std::size_t>(spans));
+  std::vector<double> sigmas(slots.size(), 0);
   const WireField::PartRows& field_rows = field_.parts()[part];
   const auto entries = field_rows.entries.begin();
   for (std::size_t i = 0; i < rows.size(); ++i) {
@@ -221,14 +268,17 @@ void WireSystem::add(int part, std::span<const int> rows, const PointsD& displac
                                          displacements.row(static_cast<Eigen::Index>(i)).transpose();
     wire_kernels().add_right(
         {entries + field_rows.offsets[rows[i]], entries + field_rows.offsets[rows[i] + 1]}, slots.data(),
-        displacement.data(), sums.data());
+        displacement.data(), {sums.data(), sigmas.data()});
   }
-  for (int l = 0; l < q; ++l)
-    for (int k = 0; k < 3; ++k) right.controls(l, 3 * expression + k) += sums[4 * l + k];
-  for (int f = 0; f < b; ++f) {
-    const int unknown = columns_.unknowns[f],
-              next = f + 1 < b ? columns_.unknowns[f + 1] : columns_.unknown_count;
-    for (int k = 0; unknown + k < next; ++k) right.coupled(unknown + k, expression) += sums[4 * (q + f) + k];
+  for (std::size_t w = 0; w < slots.size(); ++w) {
+    const int wire = static_cast<int>(w), sigma = columns_.unknowns[columns_.coupled[w]];
+    right.coupled(sigma, expression) += sigmas[w];
+    for (int span = 0; span + 3 < columns_.control_count_of(wire); ++span)
+      right.controls.block<4, 3>(columns_.controls[w] + span, 3 * expression) +=
+          Eigen::Map<const Eigen::Matrix<double, 4, 3>>(sums[slots[w].controls + span].x);
+    for (int span = 0; span + 3 < columns_.turn_count_of(wire); ++span)
+      right.coupled.col(expression).segment<12>(sigma + 1 + 3 * span) +=
+          Eigen::Map<const Eigen::Matrix<double, 4, 3>>(sums[slots[w].turns + span].x).transpose().reshaped();
   }
 }
 
@@ -236,6 +286,17 @@ WireVectors WireSystem::solve(const WireVectors& right) const {
   const Eigen::Index q = columns_.control_count, count = right.coupled.cols();
   WireVectors result = right;
   controls_.matrixL().solveInPlace(result.controls);
+  if (count ==
+      1) {  // products with a vector read the factors where they are; those with a matrix copy them first
+    for (int axis = 0; axis < 3; ++axis)
+      result.coupled.col(0).noalias() -=
+          eliminated_.middleRows(axis * q, q).transpose() * result.controls.col(axis);
+    schur_.solveInPlace(result.coupled);
+    for (int axis = 0; axis < 3; ++axis)
+      result.controls.col(axis).noalias() -= eliminated_.middleRows(axis * q, q) * result.coupled.col(0);
+    controls_.matrixU().solveInPlace(result.controls);
+    return result;
+  }
   // Axis by axis: x of all expressions are columns 0, 3, 6 ...
   const auto axis_of = [&](Eigen::MatrixXd& controls, int axis) {
     return Eigen::Map<Eigen::MatrixXd, 0, Eigen::OuterStride<>>(controls.data() + axis * q, q, count,
