@@ -15,6 +15,9 @@ namespace mien {
 namespace {
 
 constexpr int varying_ranges = 4;
+/// What suits a wire depends on its neighbours, so a sweep goes round again as long as a round takes this part of the error away.
+constexpr double least_gain = 0.002;
+constexpr int most_rounds = 8;
 
 /// Wires whose ranges are tried; twins share one.
 class RangeSearch {
@@ -83,6 +86,15 @@ class RangeSearch {
   double best_ = 0;
 };
 
+template <typename Round>
+void while_it_gains(const RangeSearch& search, const Round& round) {
+  for (int rounds = 0; rounds < most_rounds; ++rounds) {
+    const double before = search.best();
+    round();
+    if (search.best() > (1 - least_gain) * before) return;
+  }
+}
+
 }  // namespace
 
 ImproveResult improve_wires(const Character& character, std::span<const Wire> wires,
@@ -93,13 +105,15 @@ ImproveResult improve_wires(const Character& character, std::span<const Wire> wi
   result.before = search.best();
   const int steps = std::max(1, options.sweeps + (options.varying ? 2 : 0));
   for (int sweep = 0; sweep < options.sweeps; ++sweep)
-    for (std::size_t group = 0; group < search.groups(); ++group) {
-      report_progress(options.progress, "ranges",
-                      (sweep + static_cast<double>(group) / search.groups()) / steps);
-      const double step = std::pow(2, std::pow(0.5, sweep));  // 2, 1.41, 1.19, ...
-      const double factors[] = {1 / step, 1 / std::sqrt(step), std::sqrt(step), step};
-      search.try_factors(group, -1, factors);
-    }
+    while_it_gains(search, [&] {
+      for (std::size_t group = 0; group < search.groups(); ++group) {
+        report_progress(options.progress, "ranges",
+                        (sweep + static_cast<double>(group) / search.groups()) / steps);
+        const double step = std::pow(2, std::pow(0.5, sweep));  // 2, 1.41, 1.19, ...
+        const double factors[] = {1 / step, 1 / std::sqrt(step), std::sqrt(step), step};
+        search.try_factors(group, -1, factors);
+      }
+    });
   if (options.varying) {
     search.let_ranges_vary();
     for (std::size_t group = 0; group < search.groups(); ++group)

@@ -20,9 +20,9 @@ std::vector<Eigen::VectorXf> outer_vertex_weights(const Character& character, st
 
 struct ImproveOptions {
   WireSolverOptions solver;
-  int sweeps = 2;                  ///< over each wire, by ever smaller steps
-  bool varying = false;            ///< then let ranges vary along the curve: four values a wire
-  bool alike = true;               ///< every expression counts alike; false: by the size of its displacements
+  int sweeps = 2;        ///< over all wires, by ever smaller steps; ranges as often as that gains something
+  bool varying = false;  ///< then let ranges vary along the curve: four values a wire
+  bool alike = true;     ///< every expression counts alike; false: by the size of its displacements
   std::vector<std::string> fixed;  ///< wires whose ranges, or places, stay
   Progress progress;
 };
@@ -36,7 +36,7 @@ struct ImproveResult {
 /// The same wires with the ranges that rebuild the character's shapes best. Twins (`brow_L`, `brow_R`; `Left`, `Right`) keep
 /// equal ranges.
 ///   throws  as WireSolver; no shape that moves what the wires reach
-///   cost    about 250 fits to a sample of 1,500 vertices and the principal shapes of 95 %: 5 s for 22 wires and 55 shapes
+///   cost    about 500 fits to a sample of 3,000 vertices and the principal shapes of 95 %: 5 s for 22 wires and 55 shapes
 ///   method  coordinate descent: every candidate is bound, solved and measured by what its normal equations leave over
 ImproveResult improve_wires(const Character& character, std::span<const Wire> wires,
                             const ImproveOptions& options = {});
