@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <filesystem>
 #include <memory>
 #include <span>
@@ -29,6 +30,21 @@ struct WiresArguments {
   ExtractOptions options;
   SaveOptions save;
 };
+
+/// Before anything is read: numbers that no character makes right.
+void check_options(const WiresArguments& arguments) {
+  const auto require = [](bool right, const char* option, double value, const char* wanted) {
+    if (!right) throw invalid_input(option, fmt::format("is {}", value), wanted);
+  };
+  const ExtractOptions& o = arguments.options;
+  require(o.solver.ridge > 0 && std::isfinite(o.solver.ridge), "--ridge", o.solver.ridge,
+          "a finite number above 0, as 1e-4");
+  require(o.residual >= 0 && std::isfinite(o.residual), "--residual", o.residual,
+          "a part of the face's box, 0 or more, as 0.002");
+  require(o.residual_vertices >= 0 && o.residual_vertices <= 1, "--residual-vertices", o.residual_vertices,
+          "a share of the vertices, 0 to 1, as 0.02");
+  require(arguments.count == 15 || arguments.count == 22, "--count", arguments.count, "15 or 22");
+}
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -176,6 +192,7 @@ std::string as_text(const ExtractResult& r, const WireCompression& compression, 
 }
 
 void run(WiresArguments& arguments, const Common& common) {
+  check_options(arguments);
   Character character = load(arguments.character);
   if (!arguments.landmarks.empty())
     character.landmarks = read_landmarks(arguments.landmarks, character).landmarks;

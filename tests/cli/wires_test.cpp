@@ -77,6 +77,23 @@ TEST(WiresCommand, PinsMoveTheWiresThatTheyName) {
             0);
 }
 
+TEST(WiresCommand, NamesTheOptionThatIsWrong) {
+  const Folder folder;
+  const auto with = [&](const std::string& option) {
+    const Ran ran = run_mien(folder, "wires face.glb -o" + quoted(folder / "out.glb") + option);
+    EXPECT_EQ(ran.exit_code, 1);
+    EXPECT_FALSE(std::filesystem::exists(folder / "out.glb"));
+    return ran.err;
+  };
+  EXPECT_EQ(with("--ridge 0"), "mien: --ridge: is 0; a finite number above 0, as 1e-4\n");
+  EXPECT_THAT(with("--ridge nan"), HasSubstr("--ridge: is nan; a finite number"));
+  EXPECT_EQ(with("--residual=-0.5"),
+            "mien: --residual: is -0.5; a part of the face's box, 0 or more, as 0.002\n");
+  EXPECT_EQ(with("--residual-vertices 1.5"),
+            "mien: --residual-vertices: is 1.5; a share of the vertices, 0 to 1, as 0.02\n");
+  EXPECT_EQ(with("--count 17"), "mien: --count: is 17; 15 or 22\n");
+}
+
 TEST(WiresCommand, RefusesOddCurves) {
   const Folder folder;
   ASSERT_EQ(run_mien(folder, "sample human --quiet -o" + quoted(folder.path().string())).exit_code, 0);
