@@ -6,28 +6,13 @@
 #include "mien/io/load.h"
 #include "mien/io/vrm.h"
 #include "mien/naming/plan_vrm.h"
+#include "npm.h"
 #include "support.h"
 
 namespace mien {
 namespace {
 
 using test::Folder;
-
-bool runs(const std::string& command) {
-  return std::system((command + " >/dev/null 2>&1").c_str()) == 0;
-}
-
-/// The folder of the Khronos validator, installed once into the build folder; empty when that cannot be done.
-std::filesystem::path validator() {
-  const std::filesystem::path folder =
-      std::filesystem::path(MIEN_PROGRAM).parent_path() / "tests" / "gltf-validator";
-  if (std::filesystem::exists(folder / "node_modules/gltf-validator/package.json")) return folder;
-  std::filesystem::create_directories(folder);
-  const bool installed =
-      runs("cd '" + folder.string() +
-           "' && timeout 60 npm install --no-audit --no-fund --prefix . gltf-validator@2.0.0-dev.3.10");
-  return installed ? folder : std::filesystem::path();
-}
 
 /// What the validator has to say about the files; empty: no errors and no warnings.
 std::string issues_of(const std::filesystem::path& packages,
@@ -43,8 +28,8 @@ std::string issues_of(const std::filesystem::path& packages,
 class GltfValidator : public testing::Test {
  protected:
   void SetUp() override {
-    if (!runs("node --version") || !runs("npm --version")) GTEST_SKIP() << "node and npm are not installed";
-    packages_ = validator();
+    if (!test::has_node()) GTEST_SKIP() << "node and npm are not installed";
+    packages_ = test::npm_packages("gltf-validator", "gltf-validator@2.0.0-dev.3.10");
     if (packages_.empty()) GTEST_SKIP() << "npm cannot install gltf-validator here";
   }
   /// Writes in both forms, and compressed.
