@@ -21,7 +21,7 @@
 #include "mien/evaluate/constraints.h"
 #include "mien/evaluate/detail/check_pose.h"
 #include "mien/evaluate/detail/joint_chain.h"
-#include "mien/evaluate/detail/object_motion.h"
+#include "mien/evaluate/detail/point_objects.h"
 #include "mien/evaluate/detail/point_sites.h"
 #include "mien/evaluate/detail/wire_motion.h"
 
@@ -45,12 +45,6 @@ struct RigidBlend {
   Eigen::Matrix3d stretch = Eigen::Matrix3d::Zero();
 };
 
-/// What a shape does to an object.
-struct ShapeMove {
-  int shape = 0;
-  ObjectMove move;
-};
-
 /// A column of the Jacobian that a shape has a share in.
 struct ShapeColumn {
   int column = 0;
@@ -71,28 +65,25 @@ struct PointEvaluator::Impl : detail::PointSites {
         outline(detail::outline(character)),
         constraints(character),
         wire_rows(character),
-        object_rows(character, constraints),
-        wires(wire_rows) {
-    for (std::size_t s = 0; s < character.shapes.size(); ++s)
-      for (const ObjectMove& move : character.shapes[s].objects)
-        if (move.controls.rows() > 0) shape_moves.push_back({static_cast<int>(s), move});
-  }
+        objects(character, constraints, *this),
+        wires(wire_rows),
+        moved(objects.none()),
+        moved_high(moved),
+        moved_low(moved) {}
 
   Character outline;
   ConstraintSolver constraints;
   detail::WireRows wire_rows;
-  detail::ObjectRows object_rows;
-  std::vector<ShapeMove> shape_moves;  // ascending by shape
+  detail::PointObjects objects;
 
   // Of the last pose.
   Eigen::MatrixXd weights;  // #S x parts
   detail::WireMotion wires;
-  std::vector<detail::ObjectMotion> objects;  // by part
-  ShapeWeights part_weights{std::size_t{0}};  // of one part
-  Eigen::MatrixXi is_exception;               // #S x parts: the shape weight is the part's own
-  std::vector<Transform> locals;              // that obey the constraints
-  std::vector<Affine> model, carried;         // by link, by carrier
-  std::vector<StretchedMotion> motions;       // by carrier, when a site is of a dual quaternion skin
+  detail::PartMotions moved;
+  Eigen::MatrixXi is_exception;          // #S x parts: the shape weight is the part's own
+  std::vector<Transform> locals;         // that obey the constraints
+  std::vector<Affine> model, carried;    // by link, by carrier
+  std::vector<StretchedMotion> motions;  // by carrier, when a site is of a dual quaternion skin
   std::vector<DualQuaternion> rigid;
   PointsD bare, shaped, placed;  // by site: before objects, before the skin, and where it is
 
@@ -102,17 +93,11 @@ struct PointEvaluator::Impl : detail::PointSites {
   std::vector<std::array<MotionSlope, 6>> slopes;     // by carrier: turns, then shifts
   std::vector<std::array<Motion, 6>> carrier_slopes;  // the same as matrices, when there are constraints
   std::vector<Affine> model_there, high, low;
-  std::vector<detail::ObjectMotion> objects_high, objects_low;  // by part
-  std::vector<std::vector<ShapeColumn>> columns_of_shape;       // #S: the columns that a shape weight moves
+  detail::PartMotions moved_high, moved_low;
+  std::vector<std::vector<ShapeColumn>> columns_of_shape;  // #S: the columns that a shape weight moves
 
   void pose_sites(const Pose& pose);
   void set_weights(const Pose& pose);
-  bool has_objects(const Pose& pose) const { return !object_rows.empty() || !pose.objects.empty(); }
-  void move_objects(const Pose& pose, std::vector<detail::ObjectMotion>& motions);
-  Eigen::Vector3d object_shift(const Site& site, const Eigen::Vector3d& x,
-                               const std::vector<detail::ObjectMotion>& motions) const;
-  Eigen::Matrix3d object_turn(const Site& site) const;
-  Eigen::Vector3d object_slope(const Site& site, const ObjectMove& move) const;
   void split_motions();
   RigidBlend blend(const Site& site) const;
   Eigen::Vector3d place(const Site& site, const Eigen::Vector3d& shaped_site) const;
@@ -134,7 +119,6 @@ struct PointEvaluator::Impl : detail::PointSites {
   Eigen::Matrix<double, 3, 6> linear_slope_of_carriers(std::size_t site) const;
   void set_motion_slopes(const Eigen::Matrix3d& turn, const Eigen::Matrix3d& shift);
   Eigen::Matrix<double, 3, 6> dual_quaternion_slope(std::size_t site) const;
-  void check(const Freedoms& freedoms) const;
 };
 
 void PointEvaluator::Impl::set_weights(const Pose& pose) {
@@ -157,7 +141,7 @@ void PointEvaluator::Impl::pose_sites(const Pose& pose) {
   constraints.apply(locals);
   chain.evaluate(outline.nodes, locals, model, carried);
   if (!motions.empty()) split_motions();
-  if (has_objects(pose)) move_objects(pose, objects);
+  if (objects.act(pose)) objects.move(locals, weights, pose.objects, moved);
   for (std::size_t i = 0; i < sites.size(); ++i) {
     const Site& site = sites[i];
     Eigen::Vector3d x = site.neutral;
@@ -167,69 +151,10 @@ void PointEvaluator::Impl::pose_sites(const Pose& pose) {
       x += to_part[site.column] * wires.of(wire_rows, wire_entries[w]);
     const auto row = static_cast<Eigen::Index>(i);
     bare.row(row) = x;
-    if (site.object_begin != site.object_end) x += object_shift(site, x, objects);
+    if (objects.reach(site)) x += objects.shift(site, x, moved);
     shaped.row(row) = x;
     placed.row(row) = place(site, x);
   }
-}
-
-/// What the objects do while the nodes stand as `locals` says.
-void PointEvaluator::Impl::move_objects(const Pose& pose, std::vector<detail::ObjectMotion>& motions) {
-  for (std::size_t p = 0; p < parts.size(); ++p) {
-    part_weights.values = weights.col(static_cast<Eigen::Index>(p));
-    motions[p].place_nodes(object_rows, locals);
-    motions[p].set(object_rows, part_weights, pose.objects);
-  }
-}
-
-/// What moving objects add to a site at x, in the part's space.
-Eigen::Vector3d PointEvaluator::Impl::object_shift(const Site& site, const Eigen::Vector3d& x,
-                                                   const std::vector<detail::ObjectMotion>& motions) const {
-  const int part = parts[site.column];
-  const Eigen::Vector3d bound = object_rows.field().to_model(part) * x.homogeneous();
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  for (int k = site.object_begin; k < site.object_end; ++k) {
-    const detail::SiteObject& object = PointSites::objects[k];
-    const ObjectPose& pose = motions[site.column].poses()[object.object];
-    if (!pose.moves) continue;
-    if (object_rows.is_frame(object.object))
-      sum += object.weight * (pose.frame * bound.homogeneous() - bound);
-    for (int e = object.begin; e < object.end; ++e)
-      sum += object.weight * shares[e].coefficient * pose.displacements.row(shares[e].control).transpose();
-  }
-  return object_rows.field().to_part(part) * sum;
-}
-
-/// How a site follows where shapes and wires put it: more than one to one when a frame turns it.
-Eigen::Matrix3d PointEvaluator::Impl::object_turn(const Site& site) const {
-  Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
-  for (int k = site.object_begin; k < site.object_end; ++k) {
-    const detail::SiteObject& object = PointSites::objects[k];
-    const ObjectPose& pose = objects[site.column].poses()[object.object];
-    if (pose.moves && object_rows.is_frame(object.object))
-      sum += object.weight * (pose.frame.leftCols<3>() - Eigen::Matrix3d::Identity());
-  }
-  const int part = parts[site.column];
-  return Eigen::Matrix3d::Identity() +
-         object_rows.field().to_part(part) * sum * object_rows.field().to_model(part).leftCols<3>();
-}
-
-/// How a site follows the control points of an object as `move` moves them.
-Eigen::Vector3d PointEvaluator::Impl::object_slope(const Site& site, const ObjectMove& move) const {
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  for (int k = site.object_begin; k < site.object_end; ++k) {
-    const detail::SiteObject& object = PointSites::objects[k];
-    if (object.object != move.object) continue;
-    const ObjectPose& pose = objects[site.column].poses()[object.object];
-    const auto carried = [&](int control) -> Eigen::Vector3d {
-      const Eigen::Vector3d shift = move.controls.row(control).transpose();
-      return pose.moves ? pose.motions[static_cast<std::size_t>(control)].leftCols<3>() * shift : shift;
-    };
-    if (object_rows.is_frame(object.object)) sum += object.weight * carried(0);
-    for (int e = object.begin; e < object.end; ++e)
-      sum += object.weight * shares[e].coefficient * carried(shares[e].control);
-  }
-  return object_rows.field().to_part(parts[site.column]) * sum;
 }
 
 void PointEvaluator::Impl::split_motions() {
@@ -283,9 +208,9 @@ void PointEvaluator::Impl::add_shape_columns(Eigen::MatrixXd& out) const {
   for (const Term& term : terms) {
     const Site& site = sites[term.site];
     Eigen::Matrix3d linear = term.weight * linear_of(site);
-    if (site.object_begin != site.object_end) {
+    if (objects.reach(site)) {
       add_object_columns(term, linear, out);
-      linear *= object_turn(site);
+      linear *= objects.turn(site, moved);
     }
     for (int d = site.delta_begin; d < site.delta_end; ++d) {
       if (columns_of_shape[deltas[d].shape].empty() || is_exception(deltas[d].shape, site.column)) continue;
@@ -300,9 +225,9 @@ void PointEvaluator::Impl::add_shape_columns(Eigen::MatrixXd& out) const {
 void PointEvaluator::Impl::add_object_columns(const Term& term, const Eigen::Matrix3d& linear,
                                               Eigen::MatrixXd& out) const {
   const Site& site = sites[term.site];
-  for (const auto& [shape, move] : shape_moves) {
+  for (const auto& [shape, move] : objects.shape_moves()) {
     if (columns_of_shape[shape].empty() || is_exception(shape, site.column)) continue;
-    const Eigen::Vector3d shift = linear * object_slope(site, move);
+    const Eigen::Vector3d shift = linear * objects.slope(site, move, moved);
     for (const auto [column, slope] : columns_of_shape[shape])
       out.block<3, 1>(3 * term.point, column) += slope * shift;
   }
@@ -317,15 +242,15 @@ void PointEvaluator::Impl::add_object_joint_columns(const JointFreedom& freedom,
     if (!(column < 3 ? freedom.rotation : freedom.translation)) continue;
     const double step = column < 3 ? difference_step : difference_step * size;
     move_there(pose, freedom.node, column, step);
-    move_objects(pose, objects_high);
+    objects.move(locals, weights, pose.objects, moved_high);
     move_there(pose, freedom.node, column, -step);
-    move_objects(pose, objects_low);
+    objects.move(locals, weights, pose.objects, moved_low);
     const Eigen::Index to = first + column - (column < 3 || freedom.rotation ? 0 : 3);
     for (const Term& term : terms) {
       const Site& site = sites[term.site];
-      if (site.object_begin == site.object_end) continue;
+      if (!objects.reach(site)) continue;
       const Eigen::Vector3d x = bare.row(term.site);
-      const Eigen::Vector3d change = object_shift(site, x, objects_high) - object_shift(site, x, objects_low);
+      const Eigen::Vector3d change = objects.shift(site, x, moved_high) - objects.shift(site, x, moved_low);
       out.block<3, 1>(3 * term.point, to) += term.weight * (linear_of(site) * change) / (2 * step);
     }
   }
@@ -335,7 +260,7 @@ void PointEvaluator::Impl::add_all_joint_columns(const std::vector<JointFreedom>
                                                  Eigen::Index column, Eigen::MatrixXd& out) {
   for (const JointFreedom& joint : joints) {
     add_joint_columns(joint, pose, column, out);
-    if (object_rows.is_moved_by(joint.node)) add_object_joint_columns(joint, pose, column, out);
+    if (objects.are_moved_by(joint.node)) add_object_joint_columns(joint, pose, column, out);
     column += 3 * joint.rotation + 3 * joint.translation;
   }
 }
@@ -484,22 +409,6 @@ Eigen::Matrix<double, 3, 6> PointEvaluator::Impl::dual_quaternion_slope(std::siz
   return slope;
 }
 
-void PointEvaluator::Impl::check(const Freedoms& freedoms) const {
-  for (const int shape : freedoms.shapes)
-    if (shape < 0 || shape >= static_cast<int>(outline.shapes.size()))
-      throw invalid_input("freedoms", "name shape " + std::to_string(shape),
-                          "a shape from 0 to " + std::to_string(static_cast<int>(outline.shapes.size()) - 1));
-  for (const int slider : freedoms.sliders)
-    if (slider < 0 || slider >= static_cast<int>(outline.sliders.size()))
-      throw invalid_input(
-          "freedoms", "name slider " + std::to_string(slider),
-          "a slider from 0 to " + std::to_string(static_cast<int>(outline.sliders.size()) - 1));
-  for (const JointFreedom& joint : freedoms.joints)
-    if (joint.node < 0 || joint.node >= static_cast<int>(outline.nodes.size()))
-      throw invalid_input("freedoms", "name node " + std::to_string(joint.node),
-                          "a node from 0 to " + std::to_string(static_cast<int>(outline.nodes.size()) - 1));
-}
-
 Eigen::Index Freedoms::column_count() const {
   auto count = static_cast<Eigen::Index>(shapes.size() + sliders.size());
   for (const JointFreedom& joint : joints) count += 3 * joint.rotation + 3 * joint.translation;
@@ -512,9 +421,6 @@ PointEvaluator::PointEvaluator(const Character& character, const std::vector<Sur
   const auto parts = static_cast<Eigen::Index>(impl_->parts.size());
   impl_->weights.resize(shapes, parts);
   impl_->is_exception.resize(shapes, parts);
-  impl_->part_weights.values.resize(shapes);
-  for (auto* motions : {&impl_->objects, &impl_->objects_high, &impl_->objects_low})
-    motions->resize(impl_->parts.size());
   impl_->bare.resize(static_cast<Eigen::Index>(impl_->sites.size()), 3);
   impl_->shaped.resize(static_cast<Eigen::Index>(impl_->sites.size()), 3);
   impl_->placed.resize(static_cast<Eigen::Index>(impl_->sites.size()), 3);
@@ -548,7 +454,7 @@ void PointEvaluator::positions(const Pose& pose, PointsD& out) {
 }
 
 void PointEvaluator::jacobian(const Pose& pose, const Freedoms& freedoms, Eigen::MatrixXd& out) {
-  impl_->check(freedoms);
+  detail::check_freedoms(impl_->outline, freedoms);
   if (!freedoms.sliders.empty()) throw invalid_input("freedoms", "name sliders of a pose", "shapes");
   impl_->pose_sites(pose);
   out.setZero(3 * static_cast<Eigen::Index>(impl_->point_count), freedoms.column_count());
@@ -564,7 +470,7 @@ void PointEvaluator::positions(const RigPose& rig, PointsD& out) {
 }
 
 void PointEvaluator::jacobian(const RigPose& rig, const Freedoms& freedoms, Eigen::MatrixXd& out) {
-  impl_->check(freedoms);
+  detail::check_freedoms(impl_->outline, freedoms);
   if (!freedoms.shapes.empty()) throw invalid_input("freedoms", "name shapes of a rig's pose", "sliders");
   const Pose pose = pose_of(impl_->outline, rig);
   const Eigen::MatrixXd slopes = shape_weight_slopes(impl_->outline, rig.sliders);

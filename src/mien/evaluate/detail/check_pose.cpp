@@ -51,4 +51,21 @@ void weights_on_part(const Pose& pose, int part, Eigen::Ref<Eigen::VectorXd> wei
     if (exception.part == part) weights[exception.shape] = exception.value;
 }
 
+void check_freedoms(const Character& character, const Freedoms& freedoms) {
+  for (const int shape : freedoms.shapes)
+    if (shape < 0 || shape >= static_cast<int>(character.shapes.size()))
+      throw invalid_input(
+          "freedoms", "name shape " + std::to_string(shape),
+          "a shape from 0 to " + std::to_string(static_cast<int>(character.shapes.size()) - 1));
+  for (const int slider : freedoms.sliders)
+    if (slider < 0 || slider >= static_cast<int>(character.sliders.size()))
+      throw invalid_input(
+          "freedoms", "name slider " + std::to_string(slider),
+          "a slider from 0 to " + std::to_string(static_cast<int>(character.sliders.size()) - 1));
+  for (const JointFreedom& joint : freedoms.joints)
+    if (joint.node < 0 || joint.node >= static_cast<int>(character.nodes.size()))
+      throw invalid_input("freedoms", "name node " + std::to_string(joint.node),
+                          "a node from 0 to " + std::to_string(static_cast<int>(character.nodes.size()) - 1));
+}
+
 }  // namespace mien::detail

@@ -1,8 +1,9 @@
 #pragma once
-/// What every evaluator asks of a pose.
+/// What every evaluator asks of a pose, and of what slopes are taken by.
 
 #include "mien/character/character.h"
 #include "mien/character/pose.h"
+#include "mien/evaluate/point_evaluator.h"
 
 namespace mien::detail {
 
@@ -13,5 +14,8 @@ void check_pose(const Character& character, const Pose& pose);
 /// The shape weights on one part: the pose's own with its exceptions for that part.
 ///   weights  #S, written
 void weights_on_part(const Pose& pose, int part, Eigen::Ref<Eigen::VectorXd> weights);
+
+///   throws  invalid_input: a shape, slider or node that does not exist
+void check_freedoms(const Character& character, const Freedoms& freedoms);
 
 }  // namespace mien::detail
