@@ -43,10 +43,24 @@ std::vector<Points> posed(const Character& character) {
   return evaluate(character, rest_pose(character));
 }
 
+/// The vertices that a wire moves by a fifth or more of what it does.
+std::vector<SurfacePoint> held_by(const Wire& wire) {
+  std::vector<SurfacePoint> points;
+  for (const WireBinding& binding : wire.bindings)
+    for (std::size_t i = 0; i < binding.vertices.size(); ++i)
+      if (binding.falloff[i] > 0.2f) {
+        points.emplace_back().part = binding.part;
+        points.back().vertex = binding.vertices[i];
+      }
+  return points;
+}
+
 class Page {
  public:
   explicit Page(const WireReportInput& input)
-      : input_(input), portrait_(input.original, marks(), Eigen::Matrix3d::Identity()) {}
+      : input_(input),
+        rest_(posed(input.original)),
+        portrait_(input.original, marks(), Eigen::Matrix3d::Identity()) {}
 
   std::string text() {
     return detail::document("Wires of " + input_.name, "<h1>Wires of " + detail::escaped(input_.name) +
@@ -55,11 +69,15 @@ class Page {
   }
 
  private:
+  /// What counts as the face.
   std::vector<LandmarkPoint> marks() const {
     std::vector<LandmarkPoint> marks;
     for (const Wire& wire : input_.result.character.wires)
-      for (Eigen::Index l = 0; l < wire.curve.controls.rows(); ++l)
-        marks.push_back({wire.name, wire.curve.controls.row(l).transpose(), {}});
+      for (const SurfacePoint& at : held_by(wire)) {
+        const auto part = static_cast<std::size_t>(at.part);
+        const Mesh& mesh = input_.original.parts[part].mesh;
+        marks.push_back({wire.name, position_of(mesh, rest_[part], at), at});
+      }
     return marks;
   }
 
@@ -93,8 +111,10 @@ class Page {
   std::string wires() const {
     RenderOptions options = detail::sized(560, 560);
     options.polylines = polylines(input_.result.character);
-    std::string markup = "<h2>The wires</h2><div class=\"row\">";
-    markup += detail::figure(portrait_.face(portrait_.rest(), options), "the wires on the neutral",
+    std::string markup = "<h2>The wires</h2><div class=\"three\">";
+    RenderOptions whole = options;  // curves lie a little under the skin where it bulges
+    for (Polyline& line : whole.polylines) line.hidden = true;
+    markup += detail::figure(portrait_.face(portrait_.rest(), whole), "the wires on the neutral",
                              "reference curves");
     for (const View view : {View::three_quarter, View::left})
       markup += detail::figure(portrait_.head(portrait_.rest(), view, options), "the wires from the side",
@@ -138,7 +158,7 @@ class Page {
       mapped.map->values.push_back((wanted[p] - rebuilt[p]).rowwise().norm() *
                                    static_cast<float>(100 / std::max(input_.result.box, 1e-300)));
     const std::string name = detail::escaped(fit.shape);
-    return "<div class=\"row\">" +
+    return "<div class=\"three\">" +
            detail::figure(portrait_.face(wanted, plain), fit.shape, "<b>" + name + "</b>") +
            detail::figure(portrait_.face(rebuilt, plain), fit.shape + " by its wires",
                           "by its wires: " + per_cent(fit.error, fit.displacement) + " off") +
@@ -148,6 +168,7 @@ class Page {
   }
 
   const WireReportInput& input_;
+  std::vector<Points> rest_;  // per part
   detail::Portrait portrait_;
 };
 
