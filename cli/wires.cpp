@@ -140,6 +140,12 @@ void write_rebuilt(const Character& original, const ExtractResult& result, const
   }
 }
 
+/// Of a WireFit or an ExtractResult.
+template <typename Fit>
+nlohmann::json seen_json(const Fit& fit) {
+  return {{"displacement", fit.seen_displacement}, {"error", fit.seen_error}, {"largest", fit.seen_largest}};
+}
+
 nlohmann::json as_json(const ExtractResult& result, const WireCompression& compression,
                        double range_seconds) {
   nlohmann::json shapes = nlohmann::json::object(), features = nlohmann::json::object(),
@@ -149,9 +155,13 @@ nlohmann::json as_json(const ExtractResult& result, const WireCompression& compr
     std::size_t vertices = 0;
     for (const PartDelta& delta : fit.residual) vertices += delta.vertices.size();
     kept += static_cast<double>(vertices);
-    shapes[fit.shape] = {
-        {"displacement", fit.displacement}, {"error", fit.error},   {"kept_error", fit.kept_error},
-        {"largest", fit.largest},           {"vertex", fit.vertex}, {"residual_vertices", vertices}};
+    shapes[fit.shape] = {{"displacement", fit.displacement},
+                         {"error", fit.error},
+                         {"kept_error", fit.kept_error},
+                         {"largest", fit.largest},
+                         {"vertex", fit.vertex},
+                         {"residual_vertices", vertices},
+                         {"seen", seen_json(fit)}};
   }
   for (const FeatureError& feature : result.features)
     if (!feature.feature.empty())
@@ -169,6 +179,7 @@ nlohmann::json as_json(const ExtractResult& result, const WireCompression& compr
           {"error", result.error},
           {"kept_error", result.kept_error},
           {"largest", result.largest},
+          {"seen", seen_json(result)},
           {"box", result.box},
           {"skin_vertices", result.skin_vertices},
           {"residual_vertices", kept},
@@ -180,14 +191,14 @@ nlohmann::json as_json(const ExtractResult& result, const WireCompression& compr
 std::string as_text(const ExtractResult& r, const WireCompression& compression, const std::string& output) {
   const auto share = [](double part, double whole) { return whole > 0 ? 100 * part / whole : 0; };
   return fmt::format(
-      "{}: {} wires for {} shapes; they leave {:.1f} % of the displacements ({:.1f} % with what is kept "
-      "beside them), at most "
-      "{:.2f} % of the face's box\n{:.0f} : 1 against dense shapes, {:.0f} : 1 against sparse ones; system "
-      "{:.0f} ms, {:.2f} ms a "
-      "shape\n",
-      output, r.character.wires.size(), r.shapes.size(), share(r.error, r.displacement),
-      share(r.kept_error, r.displacement), share(r.largest, r.box), compression.dense, compression.sparse,
-      1000 * r.setup_seconds,
+      "{}: {} wires for {} shapes; where it can be seen they leave {:.1f} % of the displacements, at most "
+      "{:.2f} % of "
+      "the face's box; of all {:.1f} %, {:.1f} % with what is kept beside them\n{:.0f} : 1 against dense "
+      "shapes, "
+      "{:.0f} : 1 against sparse ones; system {:.0f} ms, {:.2f} ms a shape\n",
+      output, r.character.wires.size(), r.shapes.size(), share(r.seen_error, r.seen_displacement),
+      share(r.seen_largest, r.box), share(r.error, r.displacement), share(r.kept_error, r.displacement),
+      compression.dense, compression.sparse, 1000 * r.setup_seconds,
       r.shapes.empty() ? 0 : 1000 * r.solve_seconds / static_cast<double>(r.shapes.size()));
 }
 

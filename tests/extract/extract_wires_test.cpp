@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "extract/made_wires.h"
 #include "mien/core/error.h"
 #include "mien/deform/bind_wires.h"
@@ -98,6 +100,27 @@ TEST(ExtractWires, RebuildsTheBuiltInHumanAndKeepsWhatItCannot) {
     for (std::size_t p = 0; p < before.size(); ++p)
       EXPECT_LT((before[p] - after[p]).rowwise().norm().maxCoeff(), 1.001 * threshold) << face.shapes[s].name;
   }
+}
+
+TEST(ExtractWires, CountsApartWhatCanBeSeen) {
+  const Character& face = human();
+  const ExtractResult all = extract_wires(face, human_wires());
+  EXPECT_EQ(all.seen_displacement, all.displacement);
+  EXPECT_EQ(all.seen_error, all.error);
+  EXPECT_EQ(all.seen_largest, all.largest);
+  const auto with_weights = [&](float left, float right) {
+    ExtractOptions options;
+    for (const Part& part : face.parts)
+      options.solver.vertex_weights.push_back(
+          (part.mesh.positions.col(0).array() > 0)
+              .select(Eigen::VectorXf::Constant(part.mesh.positions.rows(), left), right));
+    return extract_wires(face, human_wires(), options);
+  };
+  EXPECT_EQ(with_weights(0.02f, 0.02f).seen_displacement, 0);
+  const ExtractResult left = with_weights(1, 0.02f), right = with_weights(0.02f, 1);
+  EXPECT_NEAR(std::hypot(left.seen_displacement, right.seen_displacement), all.displacement,
+              1e-9 * all.displacement);
+  EXPECT_LT(left.seen_error, right.error);
 }
 
 TEST(ExtractWires, ExactKeepsEveryShape) {

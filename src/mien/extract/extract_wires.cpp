@@ -201,10 +201,12 @@ class Fitter {
 
  private:
   Points left_over(const Shape& shape, int part, const WireFit& fit) const;
+  double weight_of(int part, Eigen::Index vertex) const {
+    return weights_.empty() || weights_[part].size() == 0 ? 1 : weights_[part][vertex];
+  }
   /// What an error counts for where it is, as a float: as it is sorted.
   float count_of(int part, Eigen::Index vertex, double error) const {
-    const bool plain = weights_.empty() || weights_[part].size() == 0;
-    return static_cast<float>(plain ? error : error * std::sqrt(weights_[part][vertex]));
+    return static_cast<float>(error * std::sqrt(weight_of(part, vertex)));
   }
   const Character& character_;
   const WireSolver& solver_;
@@ -240,6 +242,11 @@ WireFit Fitter::fit(const Shape& shape, std::vector<WireMove> moves, std::vector
       FeatureError& feature = features[pieces_.feature(part, static_cast<int>(v))];
       feature.displacement += displacement * displacement;
       feature.error += error * error;
+      if (weight_of(part, v) >= 0.5) {
+        result.seen_displacement += displacement * displacement;
+        result.seen_error += error * error;
+        result.seen_largest = std::max(result.seen_largest, error);
+      }
       if (error > threshold_) counts.push_back(count_of(part, v, error));
       if (error <= result.largest) continue;
       result.largest = error;
@@ -247,8 +254,8 @@ WireFit Fitter::fit(const Shape& shape, std::vector<WireMove> moves, std::vector
       result.vertex = static_cast<int>(v);
     }
   }
-  result.displacement = std::sqrt(result.displacement);
-  result.error = std::sqrt(result.error);
+  for (double* sum : {&result.displacement, &result.error, &result.seen_displacement, &result.seen_error})
+    *sum = std::sqrt(*sum);
   return result;
 }
 
@@ -310,9 +317,14 @@ void add_up(ExtractResult& result) {
     add(result.displacement, fit.displacement);
     add(result.error, fit.error);
     add(result.kept_error, fit.kept_error);
+    add(result.seen_displacement, fit.seen_displacement);
+    add(result.seen_error, fit.seen_error);
     result.largest = std::max(result.largest, fit.largest);
+    result.seen_largest = std::max(result.seen_largest, fit.seen_largest);
   }
-  for (double* sum : {&result.displacement, &result.error, &result.kept_error}) *sum = std::sqrt(*sum);
+  for (double* sum : {&result.displacement, &result.error, &result.kept_error, &result.seen_displacement,
+                      &result.seen_error})
+    *sum = std::sqrt(*sum);
   for (FeatureError& feature : result.features) {
     feature.displacement = std::sqrt(feature.displacement);
     feature.error = std::sqrt(feature.error);

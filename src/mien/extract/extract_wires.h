@@ -72,6 +72,8 @@ struct WireFit {
   double kept_error = 0;            ///< the same of shape less rebuilt less residual
   double largest = 0;               ///< the largest of shape less rebuilt
   int part = -1, vertex = -1;       ///< where that is
+  /// The first, second and fourth over the vertices of half a vertex weight or more: what can be seen.
+  double seen_displacement = 0, seen_error = 0, seen_largest = 0;
 };
 
 struct FeatureError {
@@ -84,6 +86,7 @@ struct ExtractResult {
   std::vector<WireFit> shapes;  ///< by Character::shapes
   std::vector<FeatureError> features;
   double displacement = 0, error = 0, kept_error = 0, largest = 0;  ///< over all shapes
+  double seen_displacement = 0, seen_error = 0, seen_largest = 0;   ///< as in WireFit, over all shapes
   double box = 0;                       ///< diagonal of the box around what wires reach
   std::size_t skin_vertices = 0;        ///< on the pieces that carry a wire
   std::vector<std::vector<char>> skin;  ///< per part, #V: whether the vertex is on such a piece

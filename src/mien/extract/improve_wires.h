@@ -22,7 +22,8 @@ struct ImproveOptions {
   WireSolverOptions solver;
   int sweeps = 2;        ///< over all wires, by ever smaller steps; ranges as often as that gains something
   bool varying = false;  ///< then let ranges vary along the curve: four values a wire
-  bool alike = true;     ///< every expression counts alike; false: by the size of its displacements
+  bool alike =
+      true;  ///< expressions count by the cube root of their size, nearly alike; false: by their size
   std::vector<std::string> fixed;  ///< wires whose ranges, or places, stay
   Progress progress;
 };
@@ -36,7 +37,7 @@ struct ImproveResult {
 /// The same wires with the ranges that rebuild the character's shapes best. Twins (`brow_L`, `brow_R`; `Left`, `Right`) keep
 /// equal ranges.
 ///   throws  as WireSolver; no shape that moves what the wires reach
-///   cost    about 500 fits to a sample of 3,000 vertices and the principal shapes of 95 %: 5 s for 22 wires and 55 shapes
+///   cost    about 500 fits to a sample of 3,000 vertices and the principal shapes: 5 s for 22 wires and 55 shapes
 ///   method  coordinate descent: every candidate is bound, solved and measured by what its normal equations leave over
 ImproveResult improve_wires(const Character& character, std::span<const Wire> wires,
                             const ImproveOptions& options = {});

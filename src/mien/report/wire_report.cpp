@@ -94,6 +94,9 @@ class Page {
     return detail::table(
         {"what", "how much"},
         {{"wires, shapes", fmt::format("{}, {}", r.character.wires.size(), r.shapes.size())},
+         {"the wires leave of the displacements that can be seen",
+          per_cent(r.seen_error, r.seen_displacement)},
+         {"largest error there, of the face's box", per_cent(r.seen_largest, r.box, 2)},
          {"the wires leave of all displacements", per_cent(r.error, r.displacement)},
          {"with the residuals that are kept", per_cent(r.kept_error, r.displacement)},
          {"largest error of the wires, of the face's box", per_cent(r.largest, r.box, 2)},

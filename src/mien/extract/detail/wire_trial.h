@@ -14,7 +14,7 @@ namespace mien::detail {
 /// A sample of the vertices around the wires, and the principal shapes there.
 class WireTrial {
  public:
-  ///   alike   every expression counts alike, however small: by size, lids would get what suits the jaw
+  ///   alike   expressions count nearly alike, by the cube root of their size: by size alone, lids would get what suits the jaw
   ///   throws  as WireSolver; no shape that moves what the wires reach
   WireTrial(const Character& character, std::span<const Wire> wires, const WireSolverOptions& solver,
             bool alike);
