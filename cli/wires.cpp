@@ -97,6 +97,15 @@ std::vector<Wire> with_another(const WiresArguments& arguments, const Character&
   return arguments.keep_ranges ? wires : improve_wires(character, wires, options).wires;
 }
 
+/// What counts in the fits. Which vertices are close to a wire does not depend on the ranges that a file gives: wires that were found
+/// are judged as when they were looked for.
+std::vector<Eigen::VectorXf> seen_weights(const WiresArguments& arguments, const Character& character,
+                                          const std::vector<Wire>& wires, std::vector<WireSketch> sketches) {
+  if (arguments.curves.empty()) return outer_vertex_weights(character, wires);
+  for (WireSketch& sketch : sketches) sketch.range = 0;
+  return outer_vertex_weights(character, draw_wires(character, sketches));
+}
+
 /// The wires, drawn and improved as the arguments say. Sets what counts in the fits.
 std::vector<Wire> wires_of(WiresArguments& arguments, const Character& character) {
   const std::vector<WireSketch> sketches = sketches_of(arguments, character);
@@ -106,7 +115,7 @@ std::vector<Wire> wires_of(WiresArguments& arguments, const Character& character
   } catch (const Error& error) {
     throw error.in_file(arguments.curves.empty() ? arguments.character : arguments.curves);
   }
-  arguments.options.solver.vertex_weights = outer_vertex_weights(character, wires);
+  arguments.options.solver.vertex_weights = seen_weights(arguments, character, wires, sketches);
   if (arguments.move_curves) wires = move_curves(character, wires, improve_options(arguments)).wires;
   wires = with_ranges(arguments, character, std::move(wires), sketches);
   for (int added = 0; added < arguments.extra; ++added)
@@ -120,6 +129,16 @@ void make_folder(const fs::path& folder) {
   if (failure) throw io_error("", "the folder cannot be made: " + failure.message()).in_file(folder.string());
 }
 
+/// Folders are made and those of files are asked for before anything is written.
+void prepare_places(const WiresArguments& arguments) {
+  for (const fs::path file : {arguments.output, arguments.write_curves})
+    if (file.has_parent_path() && !fs::is_directory(file.parent_path()))
+      throw io_error("file", "cannot be written: there is no folder " + file.parent_path().string())
+          .in_file(file.string());
+  for (const std::string& folder : {arguments.report, arguments.reconstruct})
+    if (!folder.empty()) make_folder(folder);
+}
+
 std::string file_name_of(const std::string& shape) {
   std::string name = shape.empty() ? "shape" : shape;
   for (char& c : name)
@@ -128,7 +147,6 @@ std::string file_name_of(const std::string& shape) {
 }
 
 void write_rebuilt(const Character& original, const ExtractResult& result, const fs::path& folder) {
-  make_folder(folder);
   for (std::size_t s = 0; s < result.shapes.size(); ++s) {
     Character rebuilt = rebuilt_neutral(original, result, static_cast<int>(s));
     rebuilt.shapes.clear();
@@ -215,11 +233,11 @@ void run(WiresArguments& arguments, const Common& common) {
   const double range_seconds = seconds_since(start);
   const ExtractResult result = extract_wires(character, wires, arguments.options);
   const WireCompression compression = wire_compression(character, result);
+  prepare_places(arguments);
   std::string page;
   if (!arguments.report.empty())
     page = make_wire_report({character, result, fs::path(arguments.character).filename().string(),
                              range_seconds, arguments.options.progress});
-  if (!arguments.report.empty()) make_folder(arguments.report);
   save(result.character, arguments.output, arguments.save);
   if (!arguments.write_curves.empty()) write_curves(sketches_of(wires), character, arguments.write_curves);
   if (!arguments.reconstruct.empty()) write_rebuilt(character, result, arguments.reconstruct);

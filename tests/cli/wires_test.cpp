@@ -94,6 +94,19 @@ TEST(WiresCommand, NamesTheOptionThatIsWrong) {
   EXPECT_EQ(with("--count 17"), "mien: --count: is 17; 15 or 22\n");
 }
 
+TEST(WiresCommand, WritesNothingWhereOnePlaceCannotBeWritten) {
+  const Folder folder;
+  ASSERT_EQ(run_mien(folder, "sample human --quiet -o" + quoted(folder.path().string())).exit_code, 0);
+  folder.write("file", "no folder");
+  for (const char* option : {"--reconstruct", "--report", "--write-curves"}) {
+    const Ran ran = run_mien(folder, "wires --count 15 --keep-ranges" + quoted(folder / "human.glb") + "-o" +
+                                         quoted(folder / "out.glb") + option + quoted(folder / "file/there"));
+    EXPECT_EQ(ran.exit_code, 1) << option;
+    EXPECT_THAT(ran.err, HasSubstr("file/there: ")) << option;
+    EXPECT_FALSE(std::filesystem::exists(folder / "out.glb")) << option;
+  }
+}
+
 TEST(WiresCommand, RefusesOddCurves) {
   const Folder folder;
   ASSERT_EQ(run_mien(folder, "sample human --quiet -o" + quoted(folder.path().string())).exit_code, 0);

@@ -239,13 +239,13 @@ WireFit Fitter::fit(const Shape& shape, std::vector<WireMove> moves, std::vector
                    displacement = scale * wanted.row(v).cast<double>().norm();
       result.displacement += displacement * displacement;
       result.error += error * error;
-      FeatureError& feature = features[pieces_.feature(part, static_cast<int>(v))];
-      feature.displacement += displacement * displacement;
-      feature.error += error * error;
       if (weight_of(part, v) >= 0.5) {
         result.seen_displacement += displacement * displacement;
         result.seen_error += error * error;
         result.seen_largest = std::max(result.seen_largest, error);
+        FeatureError& feature = features[pieces_.feature(part, static_cast<int>(v))];
+        feature.displacement += displacement * displacement;
+        feature.error += error * error;
       }
       if (error > threshold_) counts.push_back(count_of(part, v, error));
       if (error <= result.largest) continue;

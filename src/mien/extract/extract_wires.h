@@ -78,7 +78,7 @@ struct WireFit {
 
 struct FeatureError {
   std::string feature;                 ///< vertices go by the wire that moves them most; empty: out of reach
-  double displacement = 0, error = 0;  ///< as in WireFit, over all shapes
+  double displacement = 0, error = 0;  ///< of what can be seen, over all shapes
 };
 
 struct ExtractResult {

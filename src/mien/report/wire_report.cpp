@@ -128,15 +128,18 @@ class Page {
   std::string features() const {
     std::vector<std::vector<std::string>> rows;
     for (const FeatureError& feature : input_.result.features)
-      rows.push_back({feature.feature.empty() ? "out of reach" : detail::escaped(feature.feature),
-                      per_cent(feature.error, feature.displacement),
-                      per_cent(feature.error * feature.error, input_.result.error * input_.result.error)});
-    return "<h2>By feature</h2>" +
+      rows.push_back(
+          {feature.feature.empty() ? "out of reach" : detail::escaped(feature.feature),
+           per_cent(feature.error, feature.displacement),
+           per_cent(feature.error * feature.error, input_.result.seen_error * input_.result.seen_error)});
+    return "<h2>By feature, where it can be seen</h2>" +
            detail::table({"feature", "error, of its displacement", "share of the whole error"}, rows);
   }
 
   std::string shapes() const {
-    std::string markup = "<h2>Shapes: original, by the wires alone, error (dark: 1 % of the box)</h2>";
+    std::string markup =
+        "<h2>Shapes: original, by the wires alone, error (dark: 1 % of the box); numbers where it can be "
+        "seen</h2>";
     for (std::size_t s = 0; s < input_.result.shapes.size(); ++s) {
       report_progress(input_.progress, "report",
                       static_cast<double>(s) / static_cast<double>(input_.result.shapes.size()));
@@ -164,9 +167,9 @@ class Page {
     return "<div class=\"three\">" +
            detail::figure(portrait_.face(wanted, plain), fit.shape, "<b>" + name + "</b>") +
            detail::figure(portrait_.face(rebuilt, plain), fit.shape + " by its wires",
-                          "by its wires: " + per_cent(fit.error, fit.displacement) + " off") +
+                          "by its wires: " + per_cent(fit.seen_error, fit.seen_displacement) + " off") +
            detail::figure(portrait_.face(rebuilt, mapped), fit.shape + ": error",
-                          "largest: " + per_cent(fit.largest, input_.result.box, 2) + " of the box") +
+                          "largest: " + per_cent(fit.seen_largest, input_.result.box, 2) + " of the box") +
            "</div>";
   }
 
