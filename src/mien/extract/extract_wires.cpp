@@ -354,6 +354,7 @@ ExtractResult extract_wires(const Character& character, std::span<const Wire> wi
   result.box = pieces.box();
   result.skin_vertices = pieces.skin_vertices();
   result.skin = pieces.skin();
+  result.vertex_weights = options.solver.vertex_weights;
   std::vector<std::vector<FeatureError>> features(character.shapes.size(), pieces.features());
   result.features = pieces.features();
   result.shapes.resize(character.shapes.size());

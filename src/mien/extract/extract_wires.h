@@ -87,9 +87,10 @@ struct ExtractResult {
   std::vector<FeatureError> features;
   double displacement = 0, error = 0, kept_error = 0, largest = 0;  ///< over all shapes
   double seen_displacement = 0, seen_error = 0, seen_largest = 0;   ///< as in WireFit, over all shapes
-  double box = 0;                       ///< diagonal of the box around what wires reach
-  std::size_t skin_vertices = 0;        ///< on the pieces that carry a wire
-  std::vector<std::vector<char>> skin;  ///< per part, #V: whether the vertex is on such a piece
+  double box = 0;                               ///< diagonal of the box around what wires reach
+  std::size_t skin_vertices = 0;                ///< on the pieces that carry a wire
+  std::vector<Eigen::VectorXf> vertex_weights;  ///< as they counted; empty: all 1
+  std::vector<std::vector<char>> skin;          ///< per part, #V: whether the vertex is on such a piece
   bool is_skin(int part, int vertex) const { return skin[part][vertex]; }
   double setup_seconds = 0, solve_seconds = 0;
 };

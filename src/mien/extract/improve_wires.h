@@ -51,7 +51,7 @@ ImproveResult improve_wires(const Character& character, std::span<const Wire> wi
 ImproveResult move_curves(const Character& character, std::span<const Wire> wires,
                           const ImproveOptions& options = {});
 
-/// A wire where an extraction left most over: through the vertex with the largest error around it, along the direction in which
+/// A wire where an extraction left most over of what counts: through the vertex with the largest error around it, along the direction in which
 /// that error spreads.
 ///   throws  invalid_input: nothing is left over
 WireSketch propose_wire(const Character& character, const ExtractResult& result);

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double neighbourhood = 0.06;  ///< of the box: what counts as "around" a vertex
 
-/// Per vertex of the part: the sum of squares that the wires leave over.
+/// Per vertex of the part: the sum of squares that the wires leave over, by what the vertex counts.
 Eigen::VectorXd energy_of(const Character& character, const ExtractResult& result, int part) {
   Eigen::VectorXd energy = Eigen::VectorXd::Zero(character.parts[part].mesh.positions.rows());
   for (std::size_t s = 0; s < result.shapes.size(); ++s) {
@@ -25,6 +25,8 @@ Eigen::VectorXd energy_of(const Character& character, const ExtractResult& resul
           left.row(delta.vertices[i]) -= delta.deltas.row(static_cast<Eigen::Index>(i));
     energy += left.cast<double>().rowwise().squaredNorm();
   }
+  if (!result.vertex_weights.empty() && result.vertex_weights[part].size() > 0)
+    energy.array() *= result.vertex_weights[part].cast<double>().array();
   for (Eigen::Index v = 0; v < energy.size(); ++v) {
     const bool reached =
         std::any_of(result.character.wires.begin(), result.character.wires.end(), [&](const Wire& wire) {
