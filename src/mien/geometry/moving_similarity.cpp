@@ -1,8 +1,15 @@
 #include "mien/geometry/moving_similarity.h"
 
+#include <cmath>
 #include <utility>
 
 namespace mien {
+namespace {
+
+/// Distance from a point at which all points together count as much as it does, in softnesses.
+constexpr double far = 60;
+
+}  // namespace
 
 MovingSimilarity::MovingSimilarity(PointsD from, PointsD to, double softness, Eigen::VectorXd weights)
     : from_(std::move(from)), to_(std::move(to)), softness_(softness), weights_(weights.array()) {
@@ -12,7 +19,9 @@ MovingSimilarity::MovingSimilarity(PointsD from, PointsD to, double softness, Ei
 
 Similarity MovingSimilarity::at(const Eigen::Vector3d& x) const {
   const Eigen::ArrayXd squared = (from_.rowwise() - x.transpose()).rowwise().squaredNorm();
-  return fit_similarity(from_, to_, (weights_ / (squared + softness_ * softness_).square()).matrix());
+  const double all = std::pow(far * softness_, -4);
+  return fit_similarity(from_, to_,
+                        (weights_ * ((squared + softness_ * softness_).square().inverse() + all)).matrix());
 }
 
 }  // namespace mien

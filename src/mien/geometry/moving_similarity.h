@@ -9,8 +9,10 @@
 
 namespace mien {
 
-/// Moving least squares: at x the similarity that brings `from` to `to` with weights w_i / (|x - from_i|^2 + softness^2)^2
-/// (Schaefer et al. 2006, in space). Commutes with similarities of either side; reproduces them exactly.
+/// Moving least squares: at x the similarity that brings `from` to `to` with weights
+///   w_i (1 / (|x - from_i|^2 + softness^2)^2 + 1 / (60 softness)^4)
+/// (Schaefer et al. 2006, in space; the second term is ours: what lies far from all points goes with all of them, not with
+/// those that happen to be nearest). Commutes with similarities of either side; reproduces them exactly.
 class MovingSimilarity {
  public:
   ///   from, to  #P x 3, three or more points not on a line; softness in their units, above 0

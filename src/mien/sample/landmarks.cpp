@@ -116,7 +116,7 @@ void add_landmarks(Character& character, const HeadMesh& head, const CharacterFo
   out.put(58, border[last]);
   out.put(59, out.twin(border[last - low_near]));
   out.put(60, out.twin(border[last - low_far]));
-  const int inner = static_cast<int>(std::lround(turn * 0.35));
+  const int inner = static_cast<int>(std::lround(turn * 0.25));
   out.put(61, out.twin(contact[turn]));
   out.put(62, out.twin(contact[inner]));
   out.put(63, contact[0]);

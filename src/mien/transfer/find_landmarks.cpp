@@ -26,7 +26,7 @@ using detail::TemplateHead;
 /// Read off the heads of the documents' table: right placements have scores up to .076 and likeness from .57, wrong ones
 /// and things that are no heads scores from .08 and likeness up to .53.
 constexpr double accept_score = 0.07, refuse_score = 0.09, least_likeness = 0.5;
-/// Trust in the placed landmarks while the template is registered.
+/// Trust in the placed landmarks while the template is registered; given ones are trusted.
 constexpr double virtual_trust = 0.05;
 /// Likeness of two heads that need no help of normals and of a second look.
 constexpr double twins = 0.9;
@@ -99,7 +99,7 @@ class Search {
     found_.unit = placed_.placement.scale;
     decide();
     if (found_.verdict == Verdict::refuse) return std::move(found_);
-    bring_onto_target(placed_.placement(head_.points));
+    bring_onto_target(placed_.placement(head_.points), false);
     doubt();
     correct();
     for (int pass = 1; pass < passes && !found_.alike; ++pass) again();
@@ -110,7 +110,7 @@ class Search {
  private:
   void read_given();
   void decide();
-  void bring_onto_target(const PointsD& goals);
+  void bring_onto_target(PointsD goals, bool given_hold);
   void even_out();
   void again();
   void read_residuals();
@@ -202,15 +202,20 @@ void Search::even_out() {
 /// The registration once more, from where the landmarks were found.
 void Search::again() {
   even_out();
-  bring_onto_target(PointsD(points_));
+  bring_onto_target(points_, true);
   correct();
 }
 
-void Search::bring_onto_target(const PointsD& goals) {
+/// What the given points are off by without their say tells which of them are doubtful; then they may hold.
+void Search::bring_onto_target(PointsD goals, bool given_hold) {
   RegistrationOptions registration;
   registration.landmark_trust = Eigen::VectorXd::Constant(goals.rows(), virtual_trust);
   registration.landmarks_hold = found_.alike;
   registration.progress = options_.progress;
+  for (std::size_t k = 0; k < known_.size() && given_hold; ++k) {
+    goals.row(known_row_[k]) = known_[k].goal.transpose();
+    registration.landmark_trust[known_row_[k]] = 1;
+  }
   registration_ = register_surfaces(head_.skin, sought_.skin.surface, head_.points, goals, registration);
   found_.stretch = stretch_of(head_, registration_.guide);
   const SurfaceQuery own(head_.skin.positions, head_.skin.triangles);
@@ -236,7 +241,9 @@ void Search::read_residuals() {
   }
 }
 
+/// Where heads are alike, what remains at the given points says nothing about their surroundings.
 void Search::correct() {
+  if (found_.alike) return;
   read_residuals();
   points_ += to_target(
       detail::correction(detail::with_mirror_images(residuals_, head_.points, head_.mirror), head_.points));

@@ -37,7 +37,8 @@ constexpr int openness_rays = 32;
 /// While the surface is stiff this many vertices of either side say as much as all.
 constexpr int coarse_vertices = 6000;
 
-/// From the whole face's proportions down to features of a few edges.
+/// From the whole face's proportions down to features of a few edges. Landmarks keep a little of their weight to the end:
+/// there they are better than a closest point on a lip that lies on another.
 constexpr std::array<Stage, 10> schedule{{{3, 2, .35},
                                           {.5, 2, .35},
                                           {.1, 2, .35},
@@ -45,9 +46,9 @@ constexpr std::array<Stage, 10> schedule{{{3, 2, .35},
                                           {.01, .2, .35},
                                           {.003, .06, .35},
                                           {.001, .02, .12},
-                                          {2e-4, 0, .12},
-                                          {5e-5, 0, .12},
-                                          {3e-6, 0, .12}}};
+                                          {2e-4, .02, .12},
+                                          {5e-5, .02, .12},
+                                          {1e-5, .02, .12}}};
 
 /// What normals count as in a match (detail/matching.h), in face sizes. Far from all landmarks they hold the surface from
 /// the start; near them the landmarks do, and normals only tell the sides of a lid from its rim, once it lies there.
@@ -58,7 +59,7 @@ constexpr Likeness while_stiff{0, .2, 0}, while_soft{.015, .03, .03};
 /// Where proportions differ so much that normals make the skin fold (more than this share of its triangles), the soft
 /// stages go by place alone and the last, softest one is left out.
 constexpr Likeness by_place{0, 0, 0};
-constexpr double most_folds = 3e-3;
+constexpr double most_folds = 2e-3;
 constexpr std::size_t stiff_stages = 5;
 /// Distances from the nearest landmark between which near becomes far, in face sizes.
 constexpr double near_landmarks = .08, far_from_landmarks = .3;

@@ -61,6 +61,7 @@ class Run {
   bool carries_nodes() const;
   bool has_control_points() const { return !source_.objects.empty() || !source_.wires.empty(); }
   std::vector<int> carried_sliders() const;
+  Eigen::VectorXd guide_trust() const;
   SpaceMap space_map() const;
   RigMap rig_map() const;
   PointsD move(const PointsD& at, const PointsD& moves) const;

@@ -4,6 +4,7 @@
 #include <memory>
 #include <numeric>
 
+#include "mien/core/parallel.h"
 #include "mien/geometry/laplacian.h"
 #include "mien/geometry/moving_similarity.h"
 #include "mien/geometry/surface_query.h"
@@ -20,6 +21,8 @@ namespace {
 
 /// The blur of each point on the joints, relative to the face's size.
 constexpr double joint_softness = 0.005;
+/// The guide is on the target where it is this close, in face sizes, and turned this much at most; what it counts elsewhere.
+constexpr double guide_reach = 0.01, guide_cosine = 0.5, unmatched_trust = 0.01;
 /// Smaller skin weights are rounding even where nothing was estimated.
 constexpr double least_twin_weight = 1e-6;
 
@@ -43,6 +46,30 @@ void append(const WeightMatrix& values, const std::vector<int>& rows,
 }
 
 }  // namespace
+
+/// #V of the source's skin: 1 where the guide lies on the target, facing its way; little elsewhere, where the target has no
+/// such place and the guide is only carried along: cavities of a head that has none.
+Eigen::VectorXd Run::guide_trust() const {
+  const Triangles& triangles = target_surface_.surface.triangles;
+  const PointsD& target = target_surface_.surface.positions;
+  const PointsD normals = vertex_normals(registration_.guide, source_surface_.surface.triangles);
+  const SurfaceQuery skin(target, triangles);
+  Eigen::VectorXd trust = Eigen::VectorXd::Constant(normals.rows(), 1);
+  parallel_for(static_cast<std::size_t>(normals.rows()), 64, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t v = begin; v < end; ++v) {
+      const Eigen::Index row = static_cast<Eigen::Index>(v);
+      const SurfaceQuery::Hit hit = skin.closest(registration_.guide.row(row).transpose());
+      const auto corner = [&](int k) {
+        return Eigen::Vector3d(target.row(triangles(hit.triangle, k)).transpose());
+      };
+      const Eigen::Vector3d faces = (corner(1) - corner(0)).cross(corner(2) - corner(0)).normalized();
+      const bool there =
+          hit.distance <= guide_reach * registration_.unit && normals.row(row).dot(faces) > guide_cosine;
+      if (!there) trust[row] = unmatched_trust;
+    }
+  });
+  return trust;
+}
 
 SpaceMap Run::space_map() const {
   const Similarity& similarity = registration_.similarity;
@@ -73,6 +100,7 @@ SpaceMap Run::space_map() const {
   Eigen::VectorXd weights = Eigen::VectorXd::Constant(all, 1e-3);
   const Eigen::VectorXd areas = vertex_areas(maps_.aligned, source_surface_.surface.triangles);
   weights.head(skin) = (areas / areas.sum()).cwiseMax(1e-9);
+  if (carries_nodes() || has_control_points()) weights.head(skin).array() *= guide_trust().array();
   const auto local = std::make_shared<MovingSimilarity>(
       std::move(from), std::move(to), joint_softness * registration_.unit, std::move(weights));
   map.position = [local, &similarity](const Eigen::Vector3d& x) { return (*local)(similarity(x)); };
