@@ -9,6 +9,10 @@ function(mien_room name)
   endif()
   add_library(mien_${name} STATIC ${sources})
   add_library(mien::${name} ALIAS mien_${name})
+  # The same functions once for each instruction set.
+  set(kernels ${sources})
+  list(FILTER kernels INCLUDE REGEX "/kernel_[a-z0-9]+\\.cpp$")
+  set_source_files_properties(${kernels} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
   target_include_directories(mien_${name} PUBLIC
     $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/src> $<INSTALL_INTERFACE:include>)
   target_compile_features(mien_${name} PUBLIC cxx_std_20)

@@ -33,7 +33,7 @@ Character aiming() {
   return c;
 }
 
-struct Case {
+struct ConstraintCase {
   const char* expected;
   std::function<void(Character&)> spoil;
 };
@@ -44,7 +44,7 @@ TEST(ConstraintProblems, SoundOnesHaveNone) {
 
 TEST(ConstraintProblems, EachIsNamed) {
   const double infinite = std::numeric_limits<double>::infinity();
-  const Case cases[] = {
+  const ConstraintCase cases[] = {
       {"constraint 0: has no name; give it one of its own", [](Character& c) { c.constraints[0].name = ""; }},
       {"constraint look: has the name of another constraint; give each its own name",
        [](Character& c) { c.constraints[1].name = "look"; }},
@@ -78,7 +78,7 @@ TEST(ConstraintProblems, EachIsNamed) {
       {"constraint look: has no up direction; give a finite direction or an up node",
        [](Character& c) { c.constraints[0].up.setZero(); }},
   };
-  for (const Case& test : cases) {
+  for (const ConstraintCase& test : cases) {
     Character character = aiming();
     test.spoil(character);
     const std::vector<Problem> problems = validate(character);

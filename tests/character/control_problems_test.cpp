@@ -31,7 +31,7 @@ Character panel() {
   return c;
 }
 
-struct Case {
+struct ControlCase {
   const char* expected;
   std::function<void(Character&)> spoil;
 };
@@ -41,7 +41,7 @@ TEST(ControlProblems, SoundOnesHaveNone) {
 }
 
 TEST(ControlProblems, EachIsNamed) {
-  const Case cases[] = {
+  const ControlCase cases[] = {
       {"control 0: has no name; give it one of its own", [](Character& c) { c.controls[0].name = ""; }},
       {"control smileLeft: has the name of another control; give each its own name",
        [](Character& c) { c.controls[1].name = "smileLeft"; }},
@@ -70,7 +70,7 @@ TEST(ControlProblems, EachIsNamed) {
       {"control look: has a place or a size that is not finite or not above 0; give finite numbers",
        [](Character& c) { c.controls[2].size.x() = 0; }},
   };
-  for (const Case& test : cases) {
+  for (const ControlCase& test : cases) {
     Character character = panel();
     test.spoil(character);
     const std::vector<Problem> problems = validate(character);

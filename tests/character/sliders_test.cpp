@@ -6,11 +6,13 @@
 #include <limits>
 #include <random>
 
+#include "error_of.h"
 #include "mien/core/error.h"
 
 namespace mien {
 namespace {
 
+using test::error_of;
 using ::testing::HasSubstr;
 
 /// Shapes a (half smile), b (smile), c (frown), d (open), e (b and d together), f (b, c- and d).
@@ -24,16 +26,6 @@ Character rig(CorrectiveRule rule = CorrectiveRule::product) {
 
 Eigen::VectorXd weights_at(const Character& character, double smile, double open) {
   return shape_weights(character, SliderValues(Eigen::Vector2d(smile, open))).values;
-}
-
-template <typename Call>
-std::string error_of(Call call) {
-  try {
-    call();
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "no error";
 }
 
 Eigen::VectorXd five(double a, double b, double c, double d, double e) {

@@ -57,12 +57,12 @@ TEST(validate, a_sound_character_and_an_empty_one_have_no_problems) {
   EXPECT_TRUE(validate(Character{}).empty());
 }
 
-struct Case {
+struct DamagedCase {
   std::function<void(Character&)> damage;
   const char* error;
 };
 
-const Case cases[] = {
+const DamagedCase cases[] = {
     {[](Character& c) { c.nodes[1].parent = 5; }, "node jaw: names parent 5; there are 2"},
     {[](Character& c) { c.nodes[0].parent = 1; }, "node jaw: is its own ancestor; nodes must form trees"},
     {[](Character& c) { c.nodes[0].rest.scale[1] = nan_value; },
@@ -190,7 +190,7 @@ const Case cases[] = {
 };
 
 TEST(validate, each_problem_is_named_with_its_place) {
-  for (const Case& bad : cases) {
+  for (const DamagedCase& bad : cases) {
     SCOPED_TRACE(bad.error);
     Character c = sound_character();
     bad.damage(c);

@@ -7,6 +7,7 @@
 #include <functional>
 
 #include "character/objects_in_code.h"
+#include "error_of.h"
 #include "mien/character/object_problems.h"
 #include "mien/core/error.h"
 #include "mien/geometry/nurbs_query.h"
@@ -14,18 +15,10 @@
 namespace mien {
 namespace {
 
+using test::error_of;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
-
-std::string error_of(const std::function<void()>& action) {
-  try {
-    action();
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "no error";
-}
 
 /// A square of n x n vertices, one unit apart, at height z.
 Part square(const std::string& name, int n, float z) {

@@ -6,21 +6,14 @@
 #include <functional>
 
 #include "character/objects_in_code.h"
+#include "error_of.h"
 #include "mien/core/error.h"
 
 namespace mien {
 namespace {
 
+using test::error_of;
 using ::testing::HasSubstr;
-
-std::string error_of(const std::function<void()>& action) {
-  try {
-    action();
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "no error";
-}
 
 PointsD neutral(const Character& character) {
   return character.parts[0].mesh.positions.cast<double>();

@@ -5,12 +5,14 @@
 
 #include <numbers>
 
+#include "error_of.h"
 #include "mien/core/error.h"
 #include "mien/core/parallel.h"
 
 namespace mien {
 namespace {
 
+using test::error_of;
 using ::testing::HasSubstr;
 
 /// Vertices along x from 0 to 2; the first belongs to joint 0, the last to joint 1, the middle to both.
@@ -31,17 +33,6 @@ Eigen::Matrix4d elbow_turned(double angle) {
   model.topLeftCorner<3, 3>() = Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitZ()).toRotationMatrix();
   model(0, 3) = 1;
   return model;
-}
-
-template <class Call>
-std::string error_of(Call call) {
-  try {
-    call();
-  } catch (const Error& error) {
-    EXPECT_EQ(error.kind(), Error::Kind::invalid_input);
-    return error.what();
-  }
-  return "no error";
 }
 
 TEST(SkinLinear, InvalidInputs) {

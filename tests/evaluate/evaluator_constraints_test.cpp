@@ -3,6 +3,7 @@
 
 #include <cstring>
 
+#include "evaluate/evaluated.h"
 #include "evaluate/rigs.h"
 #include "mien/evaluate/evaluate.h"
 #include "mien/evaluate/evaluator.h"
@@ -11,13 +12,10 @@
 namespace mien {
 namespace {
 
-std::vector<float> evaluated(Evaluator& evaluator, const Pose& pose) {
-  std::vector<float> positions(3 * evaluator.vertex_count(), NAN);
-  evaluator.evaluate(pose, positions);
-  return positions;
-}
+using test::all_vertices;
+using test::evaluated;
 
-PointsD joined(const std::vector<Points>& parts) {
+PointsD stacked(const std::vector<Points>& parts) {
   Eigen::Index count = 0;
   for (const Points& part : parts) count += part.rows();
   PointsD all(count, 3);
@@ -29,14 +27,6 @@ PointsD joined(const std::vector<Points>& parts) {
   return all;
 }
 
-std::vector<SurfacePoint> all_vertices(const Character& character) {
-  std::vector<SurfacePoint> all;
-  for (std::size_t p = 0; p < character.parts.size(); ++p)
-    for (int v = 0; v < static_cast<int>(character.parts[p].mesh.vertex_count()); ++v)
-      all.push_back({static_cast<int>(p), -1, v, {1, 0, 0}, {0, 1, 2}});
-  return all;
-}
-
 TEST(EvaluatorConstraints, AgreeWithEvaluateAtEveryVertex) {
   for (unsigned seed = 0; seed < 16; ++seed) {
     const Character character = test::constrained_rig(seed);
@@ -44,7 +34,7 @@ TEST(EvaluatorConstraints, AgreeWithEvaluateAtEveryVertex) {
     PointEvaluator points(character, all_vertices(character));
     for (unsigned step = 0; step < 4; ++step) {
       const Pose pose = test::random_pose(character, 10 * seed + step);
-      const PointsD exact = joined(evaluate(character, pose));
+      const PointsD exact = stacked(evaluate(character, pose));
       const auto fast = evaluated(evaluator, pose);
       PointsD out;
       points.positions(pose, out);

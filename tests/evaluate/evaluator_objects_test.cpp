@@ -2,10 +2,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <cstring>
 #include <functional>
 
 #include "character/objects_in_code.h"
+#include "evaluate/evaluated.h"
 #include "evaluate/rigs.h"
 #include "mien/core/error.h"
 #include "mien/deform/influence.h"
@@ -16,54 +16,24 @@
 namespace mien {
 namespace {
 
+using test::all_sets;
+using test::all_vertices;
+using test::evaluated;
+using test::joined;
+using test::largest_difference;
+using test::same_bytes;
 using ::testing::HasSubstr;
 
-constexpr InstructionSet all_sets[] = {InstructionSet::plain, InstructionSet::avx2, InstructionSet::avx512};
-
-std::vector<float> evaluated(Evaluator& evaluator, const Pose& pose) {
-  std::vector<float> positions(3 * evaluator.vertex_count(), NAN);
-  evaluator.evaluate(pose, positions);
-  return positions;
-}
-
-std::vector<float> joined(const std::vector<Points>& parts) {
-  std::vector<float> all;
-  for (const Points& part : parts) all.insert(all.end(), part.data(), part.data() + part.size());
-  return all;
-}
-
-double distance(const std::vector<float>& a, const std::vector<float>& b) {
-  double most = a.size() == b.size() ? 0 : 1e30;
-  for (std::size_t i = 0; i < a.size() && i < b.size(); ++i)
-    most = std::max<double>(most, std::abs(a[i] - b[i]));
-  return most;
-}
-
-/// The largest coordinate involved: posed, of joints, of what objects add.
-double reach(const Character& character, const Pose& pose) {
-  double most = 0;
-  for (const float x : joined(evaluate(character, pose))) most = std::max<double>(most, std::abs(x));
-  for (const Eigen::Matrix4d& matrix : model_matrices(character, pose))
-    most = std::max(most, matrix.topRightCorner<3, 1>().cwiseAbs().maxCoeff());
+/// The largest coordinate involved, of what objects add too.
+double reach_of_objects(const Character& character, const Pose& pose) {
+  double most = test::reach(character, pose);
   const InfluenceField field(character);
   for (const ObjectPose& object :
        field.pose(model_matrices(character, pose), pose.shape_weights, pose.objects)) {
     if (object.moves) most = std::max(most, object.displacements.cwiseAbs().maxCoeff());
     if (object.moves) most = std::max(most, object.frame.cwiseAbs().maxCoeff());
   }
-  return most + 1;  // neutral coordinates are below one
-}
-
-bool same_bytes(const std::vector<float>& a, const std::vector<float>& b) {
-  return a.size() == b.size() && std::memcmp(a.data(), b.data(), 4 * a.size()) == 0;
-}
-
-std::vector<SurfacePoint> all_vertices(const Character& character) {
-  std::vector<SurfacePoint> all;
-  for (std::size_t p = 0; p < character.parts.size(); ++p)
-    for (int v = 0; v < static_cast<int>(character.parts[p].mesh.vertex_count()); ++v)
-      all.push_back({static_cast<int>(p), -1, v, {1, 0, 0}, {0, 1, 2}});
-  return all;
+  return most;
 }
 
 TEST(EvaluatorObjects, InvalidInputs) {
@@ -105,7 +75,7 @@ TEST(EvaluatorObjects, AgreeWithEvaluate) {
       if (!is_supported(set)) continue;
       Evaluator evaluator(character, {DeltaPrecision::exact, set, {}});
       const auto rows = evaluated(evaluator, pose);
-      EXPECT_LT(distance(exact, rows), evaluator_tolerance * reach(character, pose))
+      EXPECT_LT(largest_difference(exact, rows), evaluator_tolerance * reach_of_objects(character, pose))
           << "seed " << seed << ", " << name_of(set);
       std::vector<float> blocks(48 * evaluator.block_count());
       evaluator.evaluate_blocks(pose, blocks);
@@ -215,12 +185,12 @@ TEST(EvaluatorObjects, PointsFollowThem) {
     double most = 0;
     for (Eigen::Index i = 0; i < out.size(); ++i)
       most = std::max(most, std::abs(out(i / 3, i % 3) - exact[static_cast<std::size_t>(i)]));
-    EXPECT_LT(most, 1e-6 * reach(character, pose)) << "seed " << seed;
+    EXPECT_LT(most, 1e-6 * reach_of_objects(character, pose)) << "seed " << seed;
   }
 }
 
 /// `pose` with freedom `column` of {all shapes, every node's turns and shifts} moved by `step`.
-Pose moved(const Pose& pose, Eigen::Index column, double step) {
+Pose moved_by(const Pose& pose, Eigen::Index column, double step) {
   Pose result = pose;
   const Eigen::Index shapes = pose.shape_weights.values.size();
   if (column < shapes) {
@@ -251,8 +221,8 @@ TEST(EvaluatorObjects, SlopesOfPointsFollowThemToo) {
     const double step = 1e-5, scale = std::max(1.0, slopes.cwiseAbs().maxCoeff());
     PointsD high, low;
     for (Eigen::Index c = 0; c < all.column_count(); ++c) {
-      points.positions(moved(pose, c, step), high);
-      points.positions(moved(pose, c, -step), low);
+      points.positions(moved_by(pose, c, step), high);
+      points.positions(moved_by(pose, c, -step), low);
       for (Eigen::Index i = 0; i < high.size(); ++i)
         ASSERT_NEAR(slopes(i, c), (high(i / 3, i % 3) - low(i / 3, i % 3)) / (2 * step), 1e-7 * scale)
             << "seed " << seed << ", column " << c << ", coordinate " << i;

@@ -3,10 +3,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <cstring>
 #include <filesystem>
 #include <numeric>
 
+#include "error_of.h"
+#include "evaluate/evaluated.h"
 #include "evaluate/rigs.h"
 #include "mien/core/error.h"
 #include "mien/core/parallel.h"
@@ -16,33 +17,18 @@
 namespace mien {
 namespace {
 
+using test::all_sets;
+using test::error_of;
+using test::evaluated;
+using test::same_bytes;
 using ::testing::HasSubstr;
-
-constexpr InstructionSet all_sets[] = {InstructionSet::plain, InstructionSet::avx2, InstructionSet::avx512};
-
-template <class Call>
-std::string error_of(Call call) {
-  try {
-    call();
-  } catch (const Error& error) {
-    EXPECT_EQ(error.kind(), Error::Kind::invalid_input);
-    return error.what();
-  }
-  return "no error";
-}
-
-std::vector<float> evaluated(Evaluator& evaluator, const Pose& pose) {
-  std::vector<float> positions(3 * evaluator.vertex_count(), NAN);
-  evaluator.evaluate(pose, positions);
-  return positions;
-}
 
 EvaluatorOptions with(InstructionSet set, DeltaPrecision precision = DeltaPrecision::exact) {
   return {precision, set, {}};
 }
 
 /// The largest coordinate that an evaluation meets.
-double reach(const Character& character, const Pose& pose) {
+double largest_coordinate(const Character& character, const Pose& pose) {
   double most = 0;
   for (const Part& part : character.parts)
     most = std::max<double>(most, part.mesh.positions.cwiseAbs().maxCoeff());
@@ -63,10 +49,6 @@ double distance(const std::vector<Points>& exact, const std::vector<float>& posi
   }
   EXPECT_EQ(at, positions.data() + positions.size());
   return most;
-}
-
-bool same_bytes(const std::vector<float>& a, const std::vector<float>& b) {
-  return a.size() == b.size() && std::memcmp(a.data(), b.data(), 4 * a.size()) == 0;
 }
 
 TEST(Evaluator, InvalidInputs) {
@@ -134,7 +116,8 @@ TEST(Evaluator, AgreesWithEvaluateOnRandomRigs) {
     for (const InstructionSet set : all_sets) {
       if (!is_supported(set)) continue;
       Evaluator evaluator(character, with(set));
-      EXPECT_LT(distance(exact, evaluated(evaluator, pose)), evaluator_tolerance * reach(character, pose))
+      EXPECT_LT(distance(exact, evaluated(evaluator, pose)),
+                evaluator_tolerance * largest_coordinate(character, pose))
           << "seed " << seed << ", " << name_of(set);
     }
   }
@@ -168,7 +151,7 @@ TEST(Evaluator, CompactDeltasStayWithinTheirBound) {
       const double bound = evaluator.compact_error(pose.shape_weights);
       EXPECT_LT(bound, 1e-4);
       EXPECT_LE(distance(evaluate(character, pose), evaluated(evaluator, pose)),
-                bound + evaluator_tolerance * reach(character, pose));
+                bound + evaluator_tolerance * largest_coordinate(character, pose));
       EXPECT_EQ(Evaluator(character, with(set)).compact_error(pose.shape_weights), 0);
     }
   }
@@ -315,7 +298,7 @@ TEST(Evaluator, MakeHumanClipEveryVertexOfEveryFrame) {
         ASSERT_LT(distance(evaluate(character, poses[f]),
                            std::vector<float>(frames.begin() + static_cast<std::ptrdiff_t>(f * size),
                                               frames.begin() + static_cast<std::ptrdiff_t>((f + 1) * size))),
-                  evaluator_tolerance * reach(character, poses[f]))
+                  evaluator_tolerance * largest_coordinate(character, poses[f]))
             << "frame " << f << ", " << name_of(set);
     }
   }

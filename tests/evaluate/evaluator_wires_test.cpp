@@ -2,9 +2,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <cstring>
 #include <functional>
 
+#include "evaluate/evaluated.h"
 #include "evaluate/rigs.h"
 #include "mien/core/error.h"
 #include "mien/evaluate/evaluate.h"
@@ -14,40 +14,13 @@
 namespace mien {
 namespace {
 
+using test::all_sets;
+using test::evaluated;
+using test::joined;
+using test::largest_difference;
+using test::reach;
+using test::same_bytes;
 using ::testing::HasSubstr;
-
-constexpr InstructionSet all_sets[] = {InstructionSet::plain, InstructionSet::avx2, InstructionSet::avx512};
-
-std::vector<float> evaluated(Evaluator& evaluator, const Pose& pose) {
-  std::vector<float> positions(3 * evaluator.vertex_count(), NAN);
-  evaluator.evaluate(pose, positions);
-  return positions;
-}
-
-std::vector<float> joined(const std::vector<Points>& parts) {
-  std::vector<float> all;
-  for (const Points& part : parts) all.insert(all.end(), part.data(), part.data() + part.size());
-  return all;
-}
-
-double distance(const std::vector<float>& a, const std::vector<float>& b) {
-  double most = a.size() == b.size() ? 0 : 1e30;
-  for (std::size_t i = 0; i < a.size() && i < b.size(); ++i)
-    most = std::max<double>(most, std::abs(a[i] - b[i]));
-  return most;
-}
-
-double reach(const Character& character, const Pose& pose) {
-  double most = 0;
-  for (const float x : joined(evaluate(character, pose))) most = std::max<double>(most, std::abs(x));
-  for (const Eigen::Matrix4d& matrix : model_matrices(character, pose))
-    most = std::max(most, matrix.topRightCorner<3, 1>().cwiseAbs().maxCoeff());
-  return most + 1;  // neutral coordinates are below one
-}
-
-bool same_bytes(const std::vector<float>& a, const std::vector<float>& b) {
-  return a.size() == b.size() && std::memcmp(a.data(), b.data(), 4 * a.size()) == 0;
-}
 
 TEST(EvaluatorWires, InvalidInputs) {
   const Character character = test::wired_rig(1);
@@ -86,7 +59,8 @@ TEST(EvaluatorWires, AgreeWithEvaluate) {
     for (const InstructionSet set : all_sets) {
       if (!is_supported(set)) continue;
       Evaluator evaluator(character, {DeltaPrecision::exact, set, {}});
-      EXPECT_LT(distance(exact, evaluated(evaluator, pose)), evaluator_tolerance * reach(character, pose))
+      EXPECT_LT(largest_difference(exact, evaluated(evaluator, pose)),
+                evaluator_tolerance * reach(character, pose))
           << "seed " << seed << ", " << name_of(set);
     }
   }
@@ -98,7 +72,7 @@ TEST(EvaluatorWires, CompactDeltasLeaveWiresExact) {
     Pose pose = test::wired_pose(character, seed);
     pose.shape_weights.values.setZero();
     Evaluator evaluator(character, {DeltaPrecision::compact, InstructionSet::best, {}});
-    EXPECT_LT(distance(joined(evaluate(character, pose)), evaluated(evaluator, pose)),
+    EXPECT_LT(largest_difference(joined(evaluate(character, pose)), evaluated(evaluator, pose)),
               evaluator_tolerance * reach(character, pose));
   }
 }
@@ -198,7 +172,8 @@ TEST(EvaluatorWires, ClipsWithWireChannelsBake) {
   evaluator.bake(poses, frames);
   for (std::size_t f = 0; f < poses.size(); ++f) {
     const auto at = frames.begin() + static_cast<std::ptrdiff_t>(f * size);
-    EXPECT_LT(distance(joined(evaluate(character, poses[f])), {at, at + static_cast<std::ptrdiff_t>(size)}),
+    EXPECT_LT(largest_difference(joined(evaluate(character, poses[f])),
+                                 {at, at + static_cast<std::ptrdiff_t>(size)}),
               evaluator_tolerance * reach(character, poses[f]));
   }
 }

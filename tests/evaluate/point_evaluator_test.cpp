@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <functional>
 
+#include "error_of.h"
 #include "evaluate/rigs.h"
 #include "mien/character/sliders.h"
 #include "mien/core/error.h"
@@ -15,18 +16,8 @@
 namespace mien {
 namespace {
 
+using test::error_of;
 using ::testing::HasSubstr;
-
-template <class Call>
-std::string error_of(Call call) {
-  try {
-    call();
-  } catch (const Error& error) {
-    EXPECT_EQ(error.kind(), Error::Kind::invalid_input);
-    return error.what();
-  }
-  return "no error";
-}
 
 SurfacePoint at_vertex(int part, int vertex) {
   return {part, -1, vertex, {1, 0, 0}, {0, 1, 2}};

@@ -6,22 +6,15 @@
 #include <cmath>
 #include <functional>
 
+#include "error_of.h"
 #include "mien/core/error.h"
 
 namespace mien {
 namespace {
 
+using test::error_of;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
-
-std::string error_of(const std::function<void()>& call) {
-  try {
-    call();
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return {};
-}
 
 const Box box{{-1, 2, 5}, {3, 4, 6}};
 

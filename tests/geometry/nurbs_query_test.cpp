@@ -6,21 +6,14 @@
 #include <cmath>
 #include <functional>
 
+#include "error_of.h"
 #include "mien/core/error.h"
 
 namespace mien {
 namespace {
 
+using test::error_of;
 using ::testing::HasSubstr;
-
-std::string error_of(const std::function<void()>& call) {
-  try {
-    call();
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "no error";
-}
 
 const double root = std::sqrt(0.5);
 const NurbsCurve quarter{2, {0, 0, 0, 1, 1, 1}, {1, root, 1}};

@@ -14,6 +14,7 @@ using nlohmann::json;
 using test::error_of;
 using test::Folder;
 using test::GltfText;
+using test::one_quad;
 
 std::string error_in(const std::string& text, const std::string& name = "face.gltf") {
   const Folder folder;
@@ -24,13 +25,7 @@ std::string error_in(const std::string& text, const std::string& name = "face.gl
   return error;
 }
 
-GltfText quad() {
-  GltfText gltf;
-  gltf.add_quad();
-  return gltf;
-}
-
-struct Case {
+struct BrokenGltf {
   const char* name;
   std::function<void(GltfText&)> damage;
   const char* error;
@@ -38,7 +33,7 @@ struct Case {
 
 const float nan_value = std::numeric_limits<float>::quiet_NaN();
 
-const Case cases[] = {
+const BrokenGltf cases[] = {
     {"no asset", [](GltfText& g) { g.root.erase("asset"); }, "file: has no \"asset\""},
     {"version", [](GltfText& g) { g.root["asset"]["version"] = "1.0"; },
      "asset.version: is \"1.0\"; mien reads version 2"},
@@ -233,27 +228,27 @@ const Case cases[] = {
 };
 
 TEST(read_gltf_bad_input, one_line_says_what_is_wrong) {
-  for (const Case& bad : cases) {
+  for (const BrokenGltf& bad : cases) {
     SCOPED_TRACE(bad.name);
-    GltfText gltf = quad();
+    GltfText gltf = one_quad();
     bad.damage(gltf);
     EXPECT_EQ(error_in(gltf.text()), std::string("face.gltf: ") + bad.error);
   }
 }
 
 TEST(read_gltf_bad_input, the_undamaged_file_is_read) {
-  EXPECT_EQ(error_in(quad().text()), "");
+  EXPECT_EQ(error_in(one_quad().text()), "");
 }
 
 TEST(read_gltf_bad_input, buffers_stay_in_the_folder) {
   for (const char* uri :
        {"../secret.bin", "/etc/passwd", "%2e%2e/secret.bin", "a/../../b.bin", "http://a/b.bin", ""}) {
-    json root = json::parse(quad().text());
+    json root = json::parse(one_quad().text());
     root["buffers"][0]["uri"] = uri;
     EXPECT_EQ(error_in(root.dump()), std::string("face.gltf: buffers[0].uri: names \"") + uri +
                                          "\"; name a file in the glTF's folder");
   }
-  json root = json::parse(quad().text());
+  json root = json::parse(one_quad().text());
   root["buffers"][0]["uri"] = "none.bin";
   EXPECT_EQ(error_in(root.dump()),
             "face.gltf: buffers[0].uri: names \"none.bin\", which does not exist; keep the files beside each "
@@ -284,7 +279,7 @@ TEST(read_gltf_bad_input, nesting_bombs) {
 
 TEST(read_gltf_bad_input, a_glb_cut_off_anywhere) {
   const Folder folder;
-  const auto source = folder.write("quad.gltf", quad().text());
+  const auto source = folder.write("quad.gltf", one_quad().text());
   save(load(source), folder / "quad.glb");
   const std::vector<std::uint8_t> whole = read_file(folder / "quad.glb");
   for (std::size_t size = 0; size < whole.size(); size += 64) {
@@ -310,7 +305,7 @@ TEST(read_gltf_bad_input, a_mesh_in_very_many_nodes_does_not_fill_the_memory) {
 
 TEST(save, an_invalid_character_leaves_no_file) {
   const Folder folder;
-  Character c = load(folder.write("quad.gltf", quad().text()));
+  Character c = load(folder.write("quad.gltf", one_quad().text()));
   c.parts[0].mesh.positions(2, 1) = nan_value;
   for (const char* name : {"out.glb", "out.gltf", "out.obj"})
     EXPECT_EQ(error_of([&] { save(c, folder / name); }),

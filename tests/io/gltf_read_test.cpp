@@ -11,6 +11,7 @@ using nlohmann::json;
 using test::error_of;
 using test::Folder;
 using test::GltfText;
+using test::one_quad;
 using testing::ElementsAre;
 
 Character read(const GltfText& gltf) {
@@ -18,14 +19,8 @@ Character read(const GltfText& gltf) {
   return load(folder.write("face.gltf", gltf.text()));
 }
 
-GltfText quad() {
-  GltfText gltf;
-  gltf.add_quad();
-  return gltf;
-}
-
 TEST(read_gltf, triangles_strips_fans_and_no_indices_give_faces) {
-  GltfText gltf = quad();
+  GltfText gltf = one_quad();
   gltf.primitive()["mode"] = 5;
   gltf.primitive()["indices"] = gltf.shorts({0, 1, 3, 2});
   EXPECT_THAT(read(gltf).parts.at(0).mesh.faces.corners(), ElementsAre(0, 1, 3, 3, 1, 2));
@@ -37,7 +32,7 @@ TEST(read_gltf, triangles_strips_fans_and_no_indices_give_faces) {
 }
 
 TEST(read_gltf, lines_make_a_part_without_faces) {
-  GltfText gltf = quad();
+  GltfText gltf = one_quad();
   gltf.primitive()["mode"] = 1;
   const Character character = read(gltf);
   ASSERT_EQ(character.parts.size(), 1u);
@@ -48,7 +43,7 @@ TEST(read_gltf, lines_make_a_part_without_faces) {
 }
 
 TEST(read_gltf, strides_step_over_what_lies_between) {
-  GltfText gltf = quad();
+  GltfText gltf = one_quad();
   std::vector<float> interleaved;
   for (int v = 0; v < 4; ++v) interleaved.insert(interleaved.end(), {float(v), 1.f, 2.f, 9.f});
   gltf.primitive()["attributes"]["POSITION"] = gltf.accessor(gltf.view(interleaved, 16), 5126, "VEC3", 4);
@@ -56,7 +51,7 @@ TEST(read_gltf, strides_step_over_what_lies_between) {
 }
 
 TEST(read_gltf, integers_are_quantised_positions_and_normalised_ones_are_fractions) {
-  GltfText gltf = quad();
+  GltfText gltf = one_quad();
   gltf.root["extensionsUsed"] = gltf.root["extensionsRequired"] = {"KHR_mesh_quantization"};
   const int shorts = gltf.view(std::vector<std::int16_t>{0, 0, 0, 7, 0, 0, 0, 0, 0, 32767, -32768, 0}, 6);
   gltf.primitive()["attributes"]["POSITION"] = gltf.accessor(shorts, 5122, "VEC3", 4);
@@ -69,7 +64,7 @@ TEST(read_gltf, integers_are_quantised_positions_and_normalised_ones_are_fractio
 }
 
 TEST(read_gltf, sparse_rows_replace_those_of_the_base_or_of_zeros) {
-  GltfText gltf = quad();
+  GltfText gltf = one_quad();
   const json sparse = {
       {"count", 2},
       {"indices", {{"bufferView", gltf.view(std::vector<std::uint8_t>{1, 3})}, {"componentType", 5121}}},
@@ -87,7 +82,7 @@ TEST(read_gltf, sparse_rows_replace_those_of_the_base_or_of_zeros) {
 }
 
 TEST(read_gltf, primitives_share_a_vertex_range_or_follow_one_another) {
-  GltfText gltf = quad();
+  GltfText gltf = one_quad();
   json shared = gltf.primitive(), own = gltf.primitive();
   shared["indices"] = gltf.shorts({3, 2, 1});
   own["attributes"]["POSITION"] = gltf.floats({5, 0, 0, 6, 0, 0, 5, 1, 0}, "VEC3", 3);
@@ -108,7 +103,7 @@ TEST(read_gltf, primitives_share_a_vertex_range_or_follow_one_another) {
 }
 
 TEST(read_gltf, parts_come_in_the_order_of_their_meshes_and_one_mesh_may_be_two_parts) {
-  GltfText gltf = quad();
+  GltfText gltf = one_quad();
   gltf.root["meshes"].push_back(gltf.root["meshes"][0]);
   gltf.root["meshes"][1]["name"] = "other";
   gltf.root["nodes"] = {{{"mesh", 1}}, {{"mesh", 0}, {"name", "left"}}, {{"mesh", 0}, {"name", "right"}}};
@@ -121,7 +116,7 @@ TEST(read_gltf, parts_come_in_the_order_of_their_meshes_and_one_mesh_may_be_two_
 }
 
 TEST(read_gltf, shapes_of_one_name_are_one_shape_and_each_part_keeps_its_order) {
-  GltfText gltf = quad();
+  GltfText gltf = one_quad();
   const int delta = gltf.floats({0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0}, "VEC3", 3);
   const auto mesh = [&](std::vector<std::string> names) {
     json result = gltf.root["meshes"][0];
@@ -144,7 +139,7 @@ TEST(read_gltf, shapes_of_one_name_are_one_shape_and_each_part_keeps_its_order) 
 }
 
 TEST(read_gltf, skins_without_bind_matrices_and_byte_weights) {
-  GltfText gltf = quad();
+  GltfText gltf = one_quad();
   gltf.root["nodes"] = {{{"mesh", 0}, {"skin", 0}}, {{"name", "a"}, {"children", {2}}}, {{"name", "b"}}};
   gltf.root["skins"] = {{{"joints", {1, 2}}}};
   gltf.primitive()["attributes"]["JOINTS_0"] = gltf.accessor(
@@ -166,7 +161,7 @@ TEST(read_gltf, skins_without_bind_matrices_and_byte_weights) {
 
 TEST(read_gltf, files_beside_a_gltf_have_percent_encoded_names) {
   const Folder folder;
-  const GltfText gltf = quad();
+  const GltfText gltf = one_quad();
   json root = json::parse(gltf.text());
   root["buffers"][0]["uri"] = "my%20data.bin";
   write_file_atomically(folder / "my data.bin", gltf.bytes);
@@ -175,7 +170,7 @@ TEST(read_gltf, files_beside_a_gltf_have_percent_encoded_names) {
 
 TEST(read_gltf, images_come_from_views_uris_and_files) {
   const Folder folder;
-  GltfText gltf = quad();
+  GltfText gltf = one_quad();
   gltf.root["images"] = {
       {{"bufferView", gltf.view(std::vector<std::uint8_t>{1, 2, 3})}, {"mimeType", "image/png"}},
       {{"uri", "data:image/jpeg;base64,BAUG"}},
@@ -193,7 +188,7 @@ TEST(read_gltf, images_come_from_views_uris_and_files) {
 
 TEST(read_gltf, unknown_extensions_extras_and_scenes_are_carried_to_the_next_file) {
   const Folder folder;
-  GltfText gltf = quad();
+  GltfText gltf = one_quad();
   gltf.root["extensionsUsed"] = {"KHR_lights_punctual", "ACME_thing"};
   gltf.root["extensions"] = {{"KHR_lights_punctual", {{"lights", {{{"type", "point"}}}}}},
                              {"ACME_thing", {{"a", 1}}}};

@@ -18,7 +18,7 @@ Character read(const std::string& text) {
   return load(folder.write("face.obj", text));
 }
 
-std::string error_in(const std::string& text) {
+std::string obj_error_in(const std::string& text) {
   const Folder folder;
   const auto path = folder.write("face.obj", text);
   const std::string error = error_of([&] { load(path); });
@@ -52,7 +52,7 @@ TEST(read_obj, broken_files_name_their_line) {
       {triangle + "f a b c\n",
        "face.obj: line 4: has a face corner without a vertex number; give v, v/vt, v//vn or v/vt/vn"},
   };
-  for (const auto& [text, expected] : table) EXPECT_EQ(error_in(text), expected) << text;
+  for (const auto& [text, expected] : table) EXPECT_EQ(obj_error_in(text), expected) << text;
 }
 
 TEST(read_obj, a_missing_file_and_a_folder_are_named) {
@@ -90,7 +90,7 @@ TEST(read_obj, takes_crlf_comments_continuations_blanks_and_negative_numbers) {
 }
 
 TEST(read_obj, the_line_of_an_error_after_a_continuation_is_the_file_s) {
-  EXPECT_THAT(error_in("v 0 \\\n0 0\nv 1 x 0\n"), HasSubstr("line 3"));
+  EXPECT_THAT(obj_error_in("v 0 \\\n0 0\nv 1 x 0\n"), HasSubstr("line 3"));
 }
 
 TEST(read_obj, keeps_a_uv_for_each_corner) {

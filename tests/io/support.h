@@ -236,4 +236,10 @@ inline void expect_same(const Character& a, const Character& b) {
   EXPECT_EQ(a.appearance.samplers, b.appearance.samplers);
 }
 
+inline GltfText one_quad() {
+  GltfText gltf;
+  gltf.add_quad();
+  return gltf;
+}
+
 }  // namespace mien::test

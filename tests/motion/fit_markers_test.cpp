@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "error_of.h"
 #include "mien/character/sliders.h"
 #include "mien/core/error.h"
 #include "mien/evaluate/evaluate.h"
@@ -14,6 +15,7 @@
 namespace mien {
 namespace {
 
+using test::error_of;
 using ::testing::HasSubstr;
 
 const Character& human() {
@@ -50,15 +52,6 @@ SliderValues talking(int frame) {
   sliders.values[find_slider(human(), "jawOpen")] = 0.3 * (1 - std::cos(0.2 * frame));
   sliders.values[find_slider(human(), "mouthSmileLeft")] = 0.025 * frame;
   return sliders;
-}
-
-std::string error_of(const std::function<void()>& action) {
-  try {
-    action();
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "no error";
 }
 
 TEST(fit_markers, bad_input_is_named) {

@@ -7,6 +7,7 @@
 #include <limits>
 #include <numbers>
 
+#include "error_of.h"
 #include "mien/character/sliders.h"
 #include "mien/core/error.h"
 #include "mien/evaluate/evaluate.h"
@@ -14,6 +15,7 @@
 namespace mien {
 namespace {
 
+using test::error_of;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
@@ -28,15 +30,6 @@ SliderTake take_of(const std::vector<std::string>& names, const Eigen::MatrixXd&
   SliderTake take{names, {}, values};
   for (Eigen::Index f = 0; f < values.rows(); ++f) take.seconds.push_back(static_cast<double>(f) / 30);
   return take;
-}
-
-std::string error_of(const std::function<void()>& action) {
-  try {
-    action();
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "no error";
 }
 
 double value_at(const Character& character, const Clip& clip, const char* slider, double seconds) {

@@ -5,23 +5,15 @@
 
 #include <limits>
 
+#include "error_of.h"
 #include "mien/core/error.h"
 #include "shapes_in_code.h"
 
 namespace mien {
 namespace {
 
+using test::error_of;
 using ::testing::HasSubstr;
-
-template <class Call>
-std::string error_of(Call call) {
-  try {
-    call();
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "no error";
-}
 
 /// The largest |x| / aspect and |y| of the points in the picture, where 1 is the border.
 double reach(const Camera& camera, const Points& points, double aspect) {

@@ -3,22 +3,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "error_of.h"
 #include "mien/core/error.h"
 
 namespace mien {
 namespace {
 
+using test::error_of;
 using ::testing::HasSubstr;
-
-template <class Call>
-std::string error_of(Call call) {
-  try {
-    call();
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "no error";
-}
 
 Picture checkered() {
   Picture picture = blank_picture(7, 5, {0.2f, 0.4f, 0.6f});
@@ -32,14 +24,15 @@ TEST(Picture, InvalidInputs) {
             "picture: is 0 x 5 pixels; sides from 1 to 16384, at most 100 million pixels");
   EXPECT_THAT(error_of([] { blank_picture(5, 20000); }), HasSubstr("5 x 20000"));
   EXPECT_THAT(error_of([] { blank_picture(16000, 16000); }), HasSubstr("16000 x 16000"));
-  EXPECT_THAT(error_of([] { decode_png({}); }), HasSubstr("is not a PNG"));
-  EXPECT_THAT(error_of([] { decode_png({'G', 'I', 'F', '8'}); }), HasSubstr("is not a PNG"));
+  EXPECT_THAT(error_of([] { decode_png({}); }, Error::Kind::io), HasSubstr("is not a PNG"));
+  EXPECT_THAT(error_of([] { decode_png({'G', 'I', 'F', '8'}); }, Error::Kind::io), HasSubstr("is not a PNG"));
   std::vector<unsigned char> bytes = encode_png(checkered());
   bytes.resize(bytes.size() / 2);
-  EXPECT_THAT(error_of([&] { decode_png(bytes); }), HasSubstr("PNG: is broken"));
+  EXPECT_THAT(error_of([&] { decode_png(bytes); }, Error::Kind::io), HasSubstr("PNG: is broken"));
   bytes = encode_png(checkered());
   bytes[16] = 0x7f;  // a width of two thousand million
-  EXPECT_THAT(error_of([&] { decode_png(bytes); }), HasSubstr("PNG: has 2130706439 x 5 pixels"));
+  EXPECT_THAT(error_of([&] { decode_png(bytes); }, Error::Kind::io),
+              HasSubstr("PNG: has 2130706439 x 5 pixels"));
 }
 
 TEST(Picture, PngRoundTripKeepsEveryPixel) {

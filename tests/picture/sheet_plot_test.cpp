@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "error_of.h"
 #include "mien/core/error.h"
 #include "mien/picture/color_map.h"
 #include "mien/picture/plot.h"
@@ -12,19 +13,9 @@
 namespace mien {
 namespace {
 
+using test::error_of;
 using ::testing::HasSubstr;
 using ::testing::Not;
-
-template <class Call>
-std::string error_of(Call call) {
-  try {
-    call();
-  } catch (const Error& error) {
-    EXPECT_EQ(error.kind(), Error::Kind::invalid_input);
-    return error.what();
-  }
-  return "no error";
-}
 
 /// Nearly this colour: lines are smoothed.
 bool has_pixel(const Picture& picture, std::array<int, 3> rgb) {

@@ -9,26 +9,18 @@
 #include <numbers>
 
 #include "character/objects_in_code.h"
+#include "error_of.h"
 #include "mien/core/error.h"
 
 namespace mien {
 namespace {
 
+using test::error_of;
 using ::testing::DoubleNear;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::SizeIs;
-
-std::string error_of(const std::function<void()>& work) {
-  try {
-    work();
-  } catch (const Error& error) {
-    EXPECT_EQ(error.kind(), Error::Kind::invalid_input);
-    return error.what();
-  }
-  return "no error";
-}
 
 /// Three joints in a row along x, one apart; the last two move in `move_clip`. One triangle with a shape that moves its
 /// first corner by 2 along x.

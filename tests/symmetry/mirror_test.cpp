@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "error_of.h"
 #include "mien/character/sliders.h"
 #include "mien/character/validate.h"
 #include "mien/character/whole_faces.h"
@@ -14,6 +15,7 @@
 namespace mien {
 namespace {
 
+using test::error_of;
 using ::testing::HasSubstr;
 
 const Character& human() {
@@ -23,15 +25,6 @@ const Character& human() {
 
 double diagonal(const Character& character) {
   return bounding_box(character.parts[0].mesh.positions).diagonal();
-}
-
-std::string error_of(const std::function<void()>& action) {
-  try {
-    action();
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "no error";
 }
 
 TEST(find_mirror_plane, no_surface_is_an_error) {

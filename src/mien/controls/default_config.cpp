@@ -5,35 +5,36 @@
 namespace mien {
 namespace {
 
-using Side = ControlRegion::Side;
+using RegionSide = ControlRegion::Side;
 
 /// The same region for what is right, left, and neither.
 void add_sides(std::vector<ControlRegion>& regions, const std::string& name,
                const std::vector<std::string>& match) {
-  regions.push_back({name + " right", match, Side::right});
-  regions.push_back({name + " left", match, Side::left});
-  regions.push_back({name, match, Side::any});
+  regions.push_back({name + " right", match, RegionSide::right});
+  regions.push_back({name + " left", match, RegionSide::left});
+  regions.push_back({name, match, RegionSide::any});
 }
 
 std::vector<ControlRegion> face_regions() {
   std::vector<ControlRegion> regions = {
-      {"visemes", {"viseme*", "aa", "ih", "ou", "ee", "oh"}, Side::any},
+      {"visemes", {"viseme*", "aa", "ih", "ou", "ee", "oh"}, RegionSide::any},
       {"expressions",
        {"happy", "angry", "sad", "relaxed", "surprised", "neutral", "joy", "fun", "sorrow", "expression*"},
-       Side::any}};
+       RegionSide::any}};
   add_sides(regions, "brows", {"*brow*", "*forehead*"});
-  regions.push_back({"gaze", {"lookAt*", "look?At*", "gaze*"}, Side::any});
+  regions.push_back({"gaze", {"lookAt*", "look?At*", "gaze*"}, RegionSide::any});
   add_sides(regions, "eyes",
             {"*eye*", "lid*", "*_lid*", "*.lid*", "*blink*", "*lash*", "lookUp", "lookDown", "lookLeft",
              "lookRight"});
-  regions.push_back({"nose", {"*nose*", "*nostril*", "*sneer*"}, Side::any});
+  regions.push_back({"nose", {"*nose*", "*nostril*", "*sneer*"}, RegionSide::any});
   add_sides(regions, "cheeks", {"*cheek*"});
-  regions.push_back({"tongue", {"*tongue*"}, Side::any});
-  regions.push_back({"jaw", {"*jaw*", "*chin*", "*teeth*", "*tooth*", "*mandible*"}, Side::any});
+  regions.push_back({"tongue", {"*tongue*"}, RegionSide::any});
+  regions.push_back({"jaw", {"*jaw*", "*chin*", "*teeth*", "*tooth*", "*mandible*"}, RegionSide::any});
   add_sides(regions, "mouth", {"*mouth*", "*lip*", "*smile*", "*frown*", "*pucker*"});
-  regions.push_back({"ears", {"ear*", "*_ear*", "*.ear*"}, Side::any});
-  regions.push_back(
-      {"head", {"*head*", "*neck*", "*skull*", "*spine*", "*chest*", "root", "hips", "pelvis"}, Side::any});
+  regions.push_back({"ears", {"ear*", "*_ear*", "*.ear*"}, RegionSide::any});
+  regions.push_back({"head",
+                     {"*head*", "*neck*", "*skull*", "*spine*", "*chest*", "root", "hips", "pelvis"},
+                     RegionSide::any});
   return regions;
 }
 

@@ -16,8 +16,8 @@ namespace {
 using detail::plain_name;
 using detail::PlainName;
 
-constexpr std::array<const char*, joint_convention_count> convention_names{"vrm", "rigify", "makehuman",
-                                                                           "mixamo"};
+constexpr std::array<const char*, joint_convention_count> joint_convention_names{"vrm", "rigify", "makehuman",
+                                                                                 "mixamo"};
 
 /// One joint in each convention, in JointConvention's order; "" where there is none. `words`: other usual names, by "|".
 struct JointRow {
@@ -178,14 +178,14 @@ const std::map<NameKey, int>& usual_words() {
 }  // namespace
 
 std::string_view name_of(JointConvention convention) {
-  return convention_names[static_cast<std::size_t>(convention)];
+  return joint_convention_names[static_cast<std::size_t>(convention)];
 }
 
 JointConvention joint_convention_of_name(std::string_view name) {
   std::string known;
-  for (std::size_t c = 0; c < convention_names.size(); ++c) {
-    if (name == convention_names[c]) return static_cast<JointConvention>(c);
-    known += (known.empty() ? "" : ", ") + std::string(convention_names[c]);
+  for (std::size_t c = 0; c < joint_convention_names.size(); ++c) {
+    if (name == joint_convention_names[c]) return static_cast<JointConvention>(c);
+    known += (known.empty() ? "" : ", ") + std::string(joint_convention_names[c]);
   }
   throw invalid_input("joint convention " + std::string(name.substr(0, 40)), "is not known",
                       "one of: " + known);

@@ -14,7 +14,7 @@ namespace {
 using Eigen::Vector2d;
 
 constexpr Color ground{0.97f, 0.97f, 0.965f}, track{0.86f, 0.87f, 0.88f}, edge{0.72f, 0.73f, 0.75f},
-    ink{0.16f, 0.17f, 0.19f}, pale{0.45f, 0.47f, 0.5f}, right_side{0.78f, 0.34f, 0.26f},
+    label_ink{0.16f, 0.17f, 0.19f}, pale{0.45f, 0.47f, 0.5f}, right_side{0.78f, 0.34f, 0.26f},
     left_side{0.2f, 0.45f, 0.75f}, middle{0.32f, 0.52f, 0.36f};
 
 /// How far a full turn of a joint's mark goes: this many radians.
@@ -52,7 +52,7 @@ Color PanelPainter::color_of(const Control& control) const {
 }
 
 void PanelPainter::label(const Control& control, double x, double y, double width) {
-  const detail::TextStyle style{0.56 * row_, ink};
+  const detail::TextStyle style{0.56 * row_, label_ink};
   canvas_.text(canvas_.fitted(control.label.empty() ? control.name : control.label, width, style), {x, y},
                style);
 }

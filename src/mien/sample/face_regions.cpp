@@ -4,14 +4,11 @@
 #include <cmath>
 #include <numbers>
 
+#include "mien/sample/detail/smooth_step.h"
+
 namespace mien::sample {
 
 namespace {
-
-double smooth_step(double from, double to, double x) {
-  const double t = std::clamp((x - from) / (to - from), 0.0, 1.0);
-  return t * t * (3 - 2 * t);
-}
 
 /// Spreads values of the left half's vertices to their twins.
 Weights to_both_sides(const HeadMesh& head, const Weights& half) {

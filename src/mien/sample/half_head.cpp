@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "mien/core/parallel.h"
+#include "mien/sample/detail/smooth_step.h"
 
 namespace mien::sample {
 
@@ -55,11 +56,6 @@ Rays make_rays(const GridForm& grid) {
                               s * (grid.columns[k].azimuth - grid.columns[k - 1].azimuth) /
                                   grid.columns[k].steps);
   return rays;
-}
-
-double smooth_step(double from, double to, double x) {
-  const double t = std::clamp((x - from) / (to - from), 0.0, 1.0);
-  return t * t * (3 - 2 * t);
 }
 
 Vector3d ray_direction(const KeyRow& row, double azimuth) {

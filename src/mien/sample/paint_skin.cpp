@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mien/sample/detail/smooth_step.h"
 #include "mien/texture/retexture.h"
 #include "mien/texture/texel_grid.h"
 
@@ -14,11 +15,6 @@ namespace mien::sample {
 namespace {
 
 constexpr int image_size = 512;
-
-double smooth_step(double from, double to, double x) {
-  const double t = std::clamp((x - from) / (to - from), 0.0, 1.0);
-  return t * t * (3 - 2 * t);
-}
 
 /// A number in [0, 1) for a cell of space.
 double hash(const Eigen::Vector3i& cell) {

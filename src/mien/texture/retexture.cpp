@@ -9,7 +9,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-Json object_of(const std::string& text, const std::string& place) {
+Json members_of(const std::string& text, const std::string& place) {
   const Json json = text.empty() ? Json::object() : Json::parse(text, nullptr, false);
   if (!json.is_object()) throw invalid_input(place, "is not a JSON object", "carry glTF's members");
   return json;
@@ -59,7 +59,7 @@ class TextureCopier {
   int texture(std::int64_t index) {
     const int copied = copy(from_.textures, to_.textures, index, "texture");
     Json json =
-        object_of(from_.textures[static_cast<std::size_t>(index)], "texture " + std::to_string(index));
+        members_of(from_.textures[static_cast<std::size_t>(index)], "texture " + std::to_string(index));
     if (json.contains("source")) json["source"] = copy(from_.images, to_.images, json["source"], "image");
     if (json.contains("sampler"))
       json["sampler"] = copy(from_.samplers, to_.samplers, json["sampler"], "sampler");
@@ -75,7 +75,7 @@ class TextureCopier {
 
 Material with_textures(const Material& material, const std::vector<std::pair<TextureSlot, int>>& textures) {
   Material result = material;
-  Json json = object_of(material.carried, "material " + material.name);
+  Json json = members_of(material.carried, "material " + material.name);
   if (material.carried.empty())  // as such a material is written
     json["pbrMetallicRoughness"] = {{"metallicFactor", 0.0}, {"roughnessFactor", 0.8}};
   drop_textures(json);
@@ -108,7 +108,7 @@ int copy_material(const Character& from, int material, Appearance& to) {
                         "there are " + std::to_string(materials.size()));
   Material copied = materials[static_cast<std::size_t>(material)];
   if (!copied.carried.empty()) {
-    Json json = object_of(copied.carried, "material " + copied.name);
+    Json json = members_of(copied.carried, "material " + copied.name);
     TextureCopier(from.appearance, to).renumber(json);
     copied.carried = json.dump();
   }

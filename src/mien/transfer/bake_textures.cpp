@@ -11,6 +11,7 @@
 #include "mien/core/parallel.h"
 #include "mien/texture/retexture.h"
 #include "mien/texture/texel_grid.h"
+#include "mien/transfer/detail/at.h"
 #include "mien/transfer/detail/bake_places.h"
 
 // The other way round, painting the source's pixels onto the target, leaves holes where the target's layout is finer. Looking
@@ -19,12 +20,9 @@
 namespace mien {
 namespace {
 
+using detail::at;
 using detail::BakeSurface;
 using detail::Place;
-
-std::size_t at(int index) {
-  return static_cast<std::size_t>(index);
-}
 
 std::uint8_t byte_of(float value) {
   return static_cast<std::uint8_t>(std::lround(std::clamp(value, 0.f, 1.f) * 255));

@@ -3,13 +3,12 @@
 #include <algorithm>
 
 #include "mien/transfer/carry_wires.h"
+#include "mien/transfer/detail/at.h"
 
 namespace mien {
 namespace {
 
-std::size_t at(int index) {
-  return static_cast<std::size_t>(index);
-}
+using detail::at;
 
 using Property = Channel::Property;
 

@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mien/transfer/detail/at.h"
+
 namespace mien {
 namespace {
 
-std::size_t at(int index) {
-  return static_cast<std::size_t>(index);
-}
+using detail::at;
 
 using Ranges = std::array<ValueRange, 3>;
 

@@ -6,15 +6,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mien/transfer/detail/at.h"
+
 namespace mien {
 namespace {
 
+using detail::at;
+
 /// What rounding and the harmonic filling leave of nothing.
 constexpr double least_weight = 1e-5, least_share = 1e-6;
-
-std::size_t at(int index) {
-  return static_cast<std::size_t>(index);
-}
 
 /// Columns that an object takes in the matrix: one a control point, or one for a frame without control points.
 int column_count(const InfluenceObject& object) {

@@ -5,13 +5,12 @@
 
 #include "mien/core/error.h"
 #include "mien/geometry/similarity.h"
+#include "mien/transfer/detail/at.h"
 
 namespace mien {
 namespace {
 
-std::size_t at(int index) {
-  return static_cast<std::size_t>(index);
-}
+using detail::at;
 
 /// A matrix as translation, rotation, scale; false where it shears and the three cannot say it.
 bool decompose(const Eigen::Matrix4d& matrix, Transform& transform) {

@@ -8,15 +8,14 @@
 #include "mien/core/parallel.h"
 #include "mien/geometry/surface_query.h"
 #include "mien/geometry/triangle.h"
+#include "mien/transfer/detail/at.h"
 
 namespace mien {
 namespace {
 
-std::size_t at(int index) {
-  return static_cast<std::size_t>(index);
-}
+using detail::at;
 
-Eigen::Vector3d row(const PointsD& points, int r) {
+Eigen::Vector3d point_at(const PointsD& points, int r) {
   return points.row(r).transpose();
 }
 
@@ -101,7 +100,7 @@ class CornerFinder {
   }
 
  private:
-  Eigen::Vector3d corner(int t, int k) const { return row(source_.guide, source_.triangles(t, k)); }
+  Eigen::Vector3d corner(int t, int k) const { return point_at(source_.guide, source_.triangles(t, k)); }
   /// Whether no point of the triangle can be as near to `position`, by its middle and its reach from there.
   bool is_further(int t, const Eigen::Vector3d& position, double square) const {
     const Eigen::Vector3d& middle = middles_[at(t)];
@@ -123,9 +122,9 @@ std::vector<Eigen::Vector2d> corner_uvs(const UvSource& source, const PointsD& p
   std::vector<Eigen::Vector2d> uvs(faces.corner_count(), Eigen::Vector2d::Constant(std::nan("")));
   const auto facing = [&](const Eigen::Vector3d& normal) {
     return [&, normal](int t, const Eigen::Vector3d&) {
-      const Eigen::Vector3d a = row(source.guide, source.triangles(t, 0));
-      const Eigen::Vector3d b = row(source.guide, source.triangles(t, 1));
-      const Eigen::Vector3d c = row(source.guide, source.triangles(t, 2));
+      const Eigen::Vector3d a = point_at(source.guide, source.triangles(t, 0));
+      const Eigen::Vector3d b = point_at(source.guide, source.triangles(t, 1));
+      const Eigen::Vector3d c = point_at(source.guide, source.triangles(t, 2));
       return (b - a).cross(c - a).dot(normal) > 0;
     };
   };
@@ -135,13 +134,13 @@ std::vector<Eigen::Vector2d> corner_uvs(const UvSource& source, const PointsD& p
       const auto face = faces[f];
       if (face.size() < 3) continue;
       Eigen::Vector3d centre = Eigen::Vector3d::Zero();
-      for (const int v : face) centre += row(positions, v) / static_cast<double>(face.size());
+      for (const int v : face) centre += point_at(positions, v) / static_cast<double>(face.size());
       double radius = 0;
       Eigen::Vector3d normal = Eigen::Vector3d::Zero();
       for (std::size_t c = 0; c < face.size(); ++c) {
-        const Eigen::Vector3d a = row(positions, face[c]) - centre;
+        const Eigen::Vector3d a = point_at(positions, face[c]) - centre;
         radius = std::max(radius, a.norm());
-        normal += a.cross(row(positions, face[(c + 1) % face.size()]) - centre);
+        normal += a.cross(point_at(positions, face[(c + 1) % face.size()]) - centre);
       }
       auto hit = guide.closest(centre);
       const auto same_side = facing(normal);
@@ -152,7 +151,7 @@ std::vector<Eigen::Vector2d> corner_uvs(const UvSource& source, const PointsD& p
       if (!source.has_uv[at(hit.triangle)]) continue;
       const auto candidates = finder.around(hit.triangle, hit.position, 1.05 * radius);
       for (std::size_t c = 0; c < face.size(); ++c)
-        uvs[at(faces.offset(f)) + c] = finder.uv_at(row(positions, face[c]), candidates);
+        uvs[at(faces.offset(f)) + c] = finder.uv_at(point_at(positions, face[c]), candidates);
     }
   });
   return uvs;

@@ -6,16 +6,16 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mien/transfer/detail/at.h"
+
 namespace mien {
 namespace {
+
+using detail::at;
 
 constexpr double least_falloff = 1e-5;
 /// Parameters that spread wider than this share of the curve are not averaged.
 constexpr double widest_spread = 0.1;
-
-std::size_t at(int index) {
-  return static_cast<std::size_t>(index);
-}
 
 WeightMatrix matrix_of(const Character& source) {
   const std::vector<int> first = first_rows(source);

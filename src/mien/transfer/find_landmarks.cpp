@@ -10,6 +10,7 @@
 #include "mien/core/error.h"
 #include "mien/geometry/laplacian.h"
 #include "mien/geometry/surface_query.h"
+#include "mien/transfer/detail/at.h"
 #include "mien/transfer/detail/correction.h"
 #include "mien/transfer/detail/place_head.h"
 #include "mien/transfer/detail/template_head.h"
@@ -18,6 +19,7 @@
 namespace mien {
 namespace {
 
+using detail::at;
 using detail::PlacedHead;
 using detail::SoughtHead;
 using detail::surface_point;
@@ -35,10 +37,6 @@ constexpr int passes = 3;
 constexpr double evenness = 0.5;
 /// A given point further than this from where the others put it, in face sizes, is doubted.
 constexpr double least_surprise = 0.05;
-
-std::size_t at(Eigen::Index index) {
-  return static_cast<std::size_t>(index);
-}
 
 }  // namespace
 

@@ -11,6 +11,7 @@
 
 #include "mien/core/error.h"
 #include "mien/transfer/detail/assemble_target.h"
+#include "mien/transfer/detail/at.h"
 #include "mien/transfer/detail/merge_elements.h"
 #include "mien/transfer/detail/rig_index.h"
 
@@ -18,13 +19,10 @@ namespace mien {
 namespace {
 
 using detail::Alike;
+using detail::at;
 using detail::combined;
 using detail::Kind;
 using Counts = std::array<std::size_t, detail::kind_count>;
-
-std::size_t at(int index) {
-  return static_cast<std::size_t>(index);
-}
 
 /// One version of the rig in joined numbers, and which of them it has.
 struct Version {

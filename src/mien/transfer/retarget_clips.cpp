@@ -12,13 +12,12 @@
 #include "mien/core/error.h"
 #include "mien/geometry/moving_similarity.h"
 #include "mien/transfer/carry_clips.h"
+#include "mien/transfer/detail/at.h"
 
 namespace mien {
 namespace {
 
-std::size_t at(int index) {
-  return static_cast<std::size_t>(index);
-}
+using detail::at;
 
 /// The blur of each point, relative to the points' box.
 constexpr double softness = 0.02;

@@ -11,6 +11,7 @@
 #include "mien/transfer/carry_wires.h"
 #include "mien/transfer/contact.h"
 #include "mien/transfer/detail/assemble_target.h"
+#include "mien/transfer/detail/at.h"
 #include "mien/transfer/detail/eye_balls.h"
 #include "mien/transfer/detail/face_size.h"
 #include "mien/transfer/detail/run.h"
@@ -19,10 +20,6 @@
 namespace mien {
 namespace detail {
 namespace {
-
-std::size_t at(int index) {
-  return static_cast<std::size_t>(index);
-}
 
 /// Smaller displacements are sculpting noise, relative to the face's size.
 constexpr double least_delta = 1e-5;

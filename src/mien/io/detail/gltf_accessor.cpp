@@ -12,7 +12,7 @@
 namespace mien::detail {
 namespace {
 
-enum ComponentType { i8 = 5120, u8 = 5121, i16 = 5122, u16 = 5123, u32 = 5125, f32 = 5126 };
+enum StoredType { i8 = 5120, u8 = 5121, i16 = 5122, u16 = 5123, u32 = 5125, f32 = 5126 };
 
 int size_of_component(std::int64_t type, const std::string& place) {
   switch (type) {

@@ -5,6 +5,7 @@
 
 #include "mien/core/error.h"
 #include "mien/core/parallel.h"
+#include "mien/report/detail/at.h"
 #include "mien/report/detail/data.h"
 #include "mien/report/detail/measure_clips.h"
 #include "mien/report/detail/measure_joints.h"
@@ -13,10 +14,6 @@
 
 namespace mien::detail {
 namespace {
-
-std::size_t at(int index) {
-  return static_cast<std::size_t>(index);
-}
 
 void measure_landmarks(const ReportInput& input, Data& data) {
   const TransferReport& report = input.result.report;

@@ -4,12 +4,10 @@
 #include <cmath>
 #include <map>
 
+#include "mien/report/detail/at.h"
+
 namespace mien::detail {
 namespace {
-
-std::size_t at(int index) {
-  return static_cast<std::size_t>(index);
-}
 
 constexpr std::size_t most_clips = 6;
 constexpr std::size_t curves_a_kind = 4;

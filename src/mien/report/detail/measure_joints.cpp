@@ -3,15 +3,12 @@
 #include <algorithm>
 #include <map>
 
+#include "mien/report/detail/at.h"
 #include "mien/report/detail/face_box.h"
 #include "mien/report/detail/poses.h"
 
 namespace mien::detail {
 namespace {
-
-std::size_t at(int index) {
-  return static_cast<std::size_t>(index);
-}
 
 /// Joints beyond the face would otherwise lead the list on a whole body; in landmarks' boxes.
 constexpr double around_face = 0.4;

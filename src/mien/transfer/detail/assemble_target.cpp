@@ -5,13 +5,10 @@
 #include <map>
 
 #include "mien/texture/texture.h"
+#include "mien/transfer/detail/at.h"
 
 namespace mien::detail {
 namespace {
-
-std::size_t at(int index) {
-  return static_cast<std::size_t>(index);
-}
 
 void bake_into_model_space(Part& part, const Eigen::Matrix4d& matrix) {
   if (matrix.isIdentity(0)) return;

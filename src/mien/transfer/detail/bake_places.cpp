@@ -7,16 +7,13 @@
 #include "mien/character/weld.h"
 #include "mien/core/parallel.h"
 #include "mien/geometry/laplacian.h"
+#include "mien/transfer/detail/at.h"
 
 // A pixel asks for the closest point of the guide that faces its way, on those pieces of the source that the target's piece
 // lies on: without the second, the lids would paint the eyes that touch them.
 
 namespace mien::detail {
 namespace {
-
-std::size_t at(Eigen::Index index) {
-  return static_cast<std::size_t>(index);
-}
 
 Eigen::Vector3d flat_normal(const BakeSurface& surface, int t) {
   const Eigen::Vector3d a = surface.positions.row(surface.triangles(t, 0));

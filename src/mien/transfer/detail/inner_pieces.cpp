@@ -14,13 +14,10 @@
 #include <memory>
 
 #include "mien/geometry/surface_query.h"
+#include "mien/transfer/detail/at.h"
 
 namespace mien::detail {
 namespace {
-
-std::size_t at(int index) {
-  return static_cast<std::size_t>(index);
-}
 
 std::string lower(std::string text) {
   for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));

@@ -4,12 +4,10 @@
 #include <map>
 #include <set>
 
+#include "mien/transfer/detail/at.h"
+
 namespace mien::detail {
 namespace {
-
-std::size_t at(int index) {
-  return static_cast<std::size_t>(index);
-}
 
 template <class Element>
 std::vector<std::string> unique_names(const std::vector<Element>& elements) {

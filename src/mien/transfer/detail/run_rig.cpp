@@ -14,6 +14,7 @@
 #include "mien/transfer/carry_objects.h"
 #include "mien/transfer/carry_wires.h"
 #include "mien/transfer/detail/assemble_target.h"
+#include "mien/transfer/detail/at.h"
 #include "mien/transfer/detail/run.h"
 
 namespace mien::detail {
@@ -25,10 +26,6 @@ constexpr double joint_softness = 0.005;
 constexpr double guide_reach = 0.01, guide_cosine = 0.5, unmatched_trust = 0.01;
 /// Smaller skin weights are rounding even where nothing was estimated.
 constexpr double least_twin_weight = 1e-6;
-
-std::size_t at(int index) {
-  return static_cast<std::size_t>(index);
-}
 
 /// Each to itself.
 std::vector<int> identity(std::size_t count) {
