@@ -28,6 +28,9 @@ std::size_t shared_marks(const Character& a, const Character& b) {
 /// With fewer pairs than this the others are found; with as many, what the user gave is all there is.
 constexpr std::size_t enough_pairs = 12;
 
+/// FindLandmarksOptions::arrangement_trust of a target that is marked after its source.
+constexpr double pair_trust = 0.003;
+
 /// Gives `character` the landmarks of `like` in place of what is missing; its own stay.
 void complete(const Side& side, const Character& like, FindLandmarksOptions options,
               std::vector<FoundSide>& sides) {
@@ -74,6 +77,7 @@ std::vector<FoundSide> find_missing(const Side& source, const Side& target, Tran
   FindLandmarksOptions options;
   options.progress = transfer.progress;
   if (marks(source.face) < enough_pairs && marks(target.face) >= enough_pairs) {
+    options.arrangement_trust = pair_trust;
     if (!take_landmarks(target.face, source.face)) complete(source, target.face, options, sides);
   } else {
     if (marks(source.face) < enough_pairs) {
@@ -81,6 +85,7 @@ std::vector<FoundSide> find_missing(const Side& source, const Side& target, Tran
       options.like_facing = sides[0].found.facing;
     }
     if (take_landmarks(source.face, target.face)) return sides;
+    options.arrangement_trust = pair_trust;
     complete(target, source.face, options, sides);
   }
   if (sides.empty()) return sides;

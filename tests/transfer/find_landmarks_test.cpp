@@ -156,6 +156,23 @@ TEST(FindLandmarks, AnotherFaceFromNoneAndFromFive) {
       }
 }
 
+TEST(FindLandmarks, TrustInTheArrangementKeepsIt) {
+  const Character cartoon = without_landmarks(made("cartoon"));
+  PointsD own(68, 3);
+  for (const LandmarkPoint& point : landmark_points(made("human")))
+    own.row(std::stoi(point.name.substr(5)) - 1) = point.position.transpose();
+  std::vector<double> bent;
+  for (const double trust : {0.003, 1.0}) {
+    FindLandmarksOptions options;
+    options.arrangement_trust = trust;
+    PointsD places(68, 3);
+    for (const FoundLandmark& one : find_landmarks(cartoon, made("human"), options).landmarks)
+      places.row(std::stoi(one.landmark.name.substr(5)) - 1) = one.position.transpose();
+    bent.push_back((fit_similarity(own, places)(own) - places).norm());
+  }
+  EXPECT_LT(bent[1], bent[0]);
+}
+
 TEST(FindLandmarks, AMisplacedPointIsNamed) {
   const Character& human = made("human");
   FindLandmarksOptions options;

@@ -28,8 +28,8 @@ using detail::TemplateHead;
 /// Read off the heads of the documents' table: right placements have scores up to .076 and likeness from .57, wrong ones
 /// and things that are no heads scores from .08 and likeness up to .53.
 constexpr double accept_score = 0.07, refuse_score = 0.09, least_likeness = 0.5;
-/// Trust in the placed landmarks while the template is registered; given ones are trusted.
-constexpr double virtual_trust = 0.05;
+/// Trust in the placed landmarks while a head that is alike is registered.
+constexpr double twin_trust = 0.05;
 /// Likeness of two heads that need no help of normals and of a second look.
 constexpr double twins = 0.9;
 /// Times that the head is registered, and how far its two sides are evened out between (.5: their mean).
@@ -207,7 +207,8 @@ void Search::again() {
 /// What the given points are off by without their say tells which of them are doubtful; then they may hold.
 void Search::bring_onto_target(PointsD goals, bool given_hold) {
   RegistrationOptions registration;
-  registration.landmark_trust = Eigen::VectorXd::Constant(goals.rows(), virtual_trust);
+  registration.landmark_trust =
+      Eigen::VectorXd::Constant(goals.rows(), found_.alike ? twin_trust : options_.arrangement_trust);
   registration.landmarks_hold = found_.alike;
   registration.progress = options_.progress;
   for (std::size_t k = 0; k < known_.size() && given_hold; ++k) {

@@ -23,6 +23,10 @@ struct FindLandmarksOptions {
   std::vector<Landmark> given;
   /// Turns the head to be like so that it looks along +Z with +Y up.
   Eigen::Matrix3d like_facing = Eigen::Matrix3d::Identity();
+  /// Trust in the arrangement of the placed head's landmarks while it is registered, of a given point's. Little makes them
+  /// pairs that a registration of the same two heads starts best from; more keeps each where people mark it. Heads that
+  /// are alike need no such choice.
+  double arrangement_trust = 0.05;
   Progress progress;
 };
 
