@@ -49,19 +49,20 @@ double thread_seconds() {
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
-/// Minimum over batches that take turns for about `seconds` in all. The first run of a batch brings data back into the
-/// caches; the others are timed together.
+/// Minimum over batches that take turns for about `seconds` in all. The first two runs of a batch bring data back into the caches (a
+/// victim cache has it after the second); the others are timed together.
 void race(std::vector<Contender>& contenders, double seconds) {
   for (Contender& contender : contenders) contender.run();
   const double start = thread_seconds();
   do {
     for (Contender& contender : contenders) {
-      const double first = thread_seconds();
       contender.run();
       const double second = thread_seconds();
-      const int count = std::clamp(static_cast<int>(2e-4 / (second - first)), 1, 20);
+      contender.run();
+      const double third = thread_seconds();
+      const int count = std::clamp(static_cast<int>(3e-4 / (third - second)), 1, 20);
       for (int run = 0; run < count; ++run) contender.run();
-      contender.seconds = std::min(contender.seconds, (thread_seconds() - second) / count);
+      contender.seconds = std::min(contender.seconds, (thread_seconds() - third) / count);
     }
   } while (thread_seconds() - start < seconds);
 }
