@@ -6,6 +6,7 @@
 
 #include "character/objects_in_code.h"
 #include "evaluate/evaluated.h"
+#include "evaluate/expectations.h"
 #include "evaluate/rigs.h"
 #include "mien/core/error.h"
 #include "mien/deform/influence.h"
@@ -38,27 +39,10 @@ double reach_of_objects(const Character& character, const Pose& pose) {
 
 TEST(EvaluatorObjects, InvalidInputs) {
   const Character with = test::objects_rig(1), without = test::random_rig(1);
-  const auto error_of = [&](const Character& character, const ObjectMove& move) {
-    Evaluator evaluator(character);
-    PointEvaluator points(character, {{0, -1, 3, {1, 0, 0}, {0, 1, 2}}});
-    std::vector<float> out(3 * evaluator.vertex_count());
-    PointsD few;
+  const auto error_of = [](const Character& character, const ObjectMove& move) {
     Pose pose = rest_pose(character);
     pose.objects = {move};
-    std::string text;
-    for (const auto& call : {std::function<void()>([&] { evaluator.evaluate(pose, out); }),
-                             std::function<void()>([&] { points.positions(pose, few); }),
-                             std::function<void()>([&] { evaluate(character, pose); })}) {
-      std::string here;
-      try {
-        call();
-      } catch (const Error& error) {
-        here = error.what();
-      }
-      EXPECT_TRUE(text.empty() || text == here) << text << " | " << here;
-      text = here;
-    }
-    return text;
+    return test::refusal_of(character, pose);
   };
   EXPECT_THAT(error_of(with, {9, {}}), HasSubstr("object 9: does not exist; one from 0 to 3"));
   EXPECT_THAT(error_of(with, {0, PointsD::Zero(2, 3)}), HasSubstr("is moved by 2 control points"));
@@ -156,20 +140,7 @@ TEST(EvaluatorObjects, ChosenVerticesAndBakes) {
   for (unsigned f = 0; f < 11; ++f) poses.push_back(test::objects_pose(character, f));
   poses[4] = rest_pose(character);
   poses[6].part_shape_weights = {{1, 0, 0.5}, {2, 3, -0.5}};
-  for (const InstructionSet set : all_sets) {
-    if (!is_supported(set)) continue;
-    Evaluator whole(character, {DeltaPrecision::exact, set, {}});
-    Evaluator part(character, {DeltaPrecision::exact, set, {{4, 0, 2}, {1}, {3}}});
-    std::vector<float> frames(poses.size() * 3 * whole.vertex_count()), single;
-    whole.bake(poses, frames);
-    const std::size_t rows[] = {4, 0, 2, whole.first_row(1) + 1, whole.first_row(2) + 3};
-    for (const Pose& pose : poses) {
-      const auto all = evaluated(whole, pose), few = evaluated(part, pose);
-      single.insert(single.end(), all.begin(), all.end());
-      for (std::size_t i = 0; i < few.size(); ++i) EXPECT_EQ(few[i], all[3 * rows[i / 3] + i % 3]);
-    }
-    EXPECT_TRUE(same_bytes(frames, single)) << name_of(set);
-  }
+  test::expect_bakes_and_choices(character, poses);
 }
 
 TEST(EvaluatorObjects, PointsFollowThem) {
@@ -178,32 +149,9 @@ TEST(EvaluatorObjects, PointsFollowThem) {
     if (seed % 3 == 2) character.constraints = test::constrained_rig(seed).constraints;
     Pose pose = test::objects_pose(character, seed);
     if (seed % 2) pose.part_shape_weights = {{1, 0, 0.9}};
-    PointEvaluator points(character, all_vertices(character));
-    PointsD out;
-    points.positions(pose, out);
-    const auto exact = joined(evaluate(character, pose));
-    double most = 0;
-    for (Eigen::Index i = 0; i < out.size(); ++i)
-      most = std::max(most, std::abs(out(i / 3, i % 3) - exact[static_cast<std::size_t>(i)]));
-    EXPECT_LT(most, 1e-6 * reach_of_objects(character, pose)) << "seed " << seed;
+    SCOPED_TRACE(seed);
+    test::expect_points_follow(character, pose, 1e-6 * reach_of_objects(character, pose));
   }
-}
-
-/// `pose` with freedom `column` of {all shapes, every node's turns and shifts} moved by `step`.
-Pose moved_by(const Pose& pose, Eigen::Index column, double step) {
-  Pose result = pose;
-  const Eigen::Index shapes = pose.shape_weights.values.size();
-  if (column < shapes) {
-    result.shape_weights.values[column] += step;
-    return result;
-  }
-  Transform& local = result.locals[static_cast<std::size_t>((column - shapes) / 6)];
-  const auto axis = (column - shapes) % 6;
-  if (axis < 3)
-    local.rotation = local.rotation * Eigen::AngleAxisd(step, Eigen::Vector3d::Unit(axis));
-  else
-    local.translation[axis - 3] += step;
-  return result;
 }
 
 TEST(EvaluatorObjects, SlopesOfPointsFollowThemToo) {
@@ -212,38 +160,14 @@ TEST(EvaluatorObjects, SlopesOfPointsFollowThemToo) {
     if (seed == 4) character.constraints = test::constrained_rig(seed).constraints;
     Pose pose = test::objects_pose(character, seed);
     if (seed % 2) pose.part_shape_weights = {{1, 0, 0.9}};
-    PointEvaluator points(character, all_vertices(character));
-    Freedoms all;
-    for (int s = 0; s < static_cast<int>(character.shapes.size()); ++s) all.shapes.push_back(s);
-    for (int n = 0; n < static_cast<int>(character.nodes.size()); ++n) all.joints.push_back({n, true, true});
-    Eigen::MatrixXd slopes;
-    points.jacobian(pose, all, slopes);
-    const double step = 1e-5, scale = std::max(1.0, slopes.cwiseAbs().maxCoeff());
-    PointsD high, low;
-    for (Eigen::Index c = 0; c < all.column_count(); ++c) {
-      points.positions(moved_by(pose, c, step), high);
-      points.positions(moved_by(pose, c, -step), low);
-      for (Eigen::Index i = 0; i < high.size(); ++i)
-        ASSERT_NEAR(slopes(i, c), (high(i / 3, i % 3) - low(i / 3, i % 3)) / (2 * step), 1e-7 * scale)
-            << "seed " << seed << ", column " << c << ", coordinate " << i;
-    }
+    SCOPED_TRACE(seed);
+    test::expect_jacobian(character, pose, all_vertices(character));
   }
 }
 
 TEST(EvaluatorObjects, ShapeRowsAreThePositionsLinearPart) {
   const Character character = test::objects_rig(3);
-  const Pose pose = test::objects_pose(character, 3);
-  PointEvaluator points(character, all_vertices(character));
-  Pose other = pose;
-  other.shape_weights.values.setConstant(-0.7);
-  Eigen::MatrixXd rows;
-  points.shape_rows(pose, rows);
-  PointsD from, to;
-  points.positions(pose, from);
-  points.positions(other, to);
-  const Eigen::VectorXd move = rows * (other.shape_weights.values - pose.shape_weights.values);
-  for (Eigen::Index p = 0; p < from.rows(); ++p)
-    EXPECT_LT((to.row(p) - from.row(p) - move.segment<3>(3 * p).transpose()).norm(), 1e-10);
+  test::expect_shape_rows(character, test::objects_pose(character, 3), all_vertices(character), 1e-10);
 }
 
 }  // namespace

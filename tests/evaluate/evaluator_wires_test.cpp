@@ -2,9 +2,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <functional>
-
 #include "evaluate/evaluated.h"
+#include "evaluate/expectations.h"
 #include "evaluate/rigs.h"
 #include "mien/core/error.h"
 #include "mien/evaluate/evaluate.h"
@@ -24,27 +23,10 @@ using ::testing::HasSubstr;
 
 TEST(EvaluatorWires, InvalidInputs) {
   const Character character = test::wired_rig(1);
-  Evaluator evaluator(character);
-  PointEvaluator points(character, {{0, -1, 3, {1, 0, 0}, {0, 1, 2}}});
-  std::vector<float> out(3 * evaluator.vertex_count());
-  PointsD few;
   const auto error_of = [&](const WireMove& move) {
     Pose pose = rest_pose(character);
     pose.wires = {move};
-    std::string text;
-    for (const auto& call : {std::function<void()>([&] { evaluator.evaluate(pose, out); }),
-                             std::function<void()>([&] { points.positions(pose, few); }),
-                             std::function<void()>([&] { evaluate(character, pose); })}) {
-      std::string here;
-      try {
-        call();
-      } catch (const Error& error) {
-        here = error.what();
-      }
-      EXPECT_TRUE(text.empty() || text == here) << text << " | " << here;
-      text = here;
-    }
-    return text;
+    return test::refusal_of(character, pose);
   };
   EXPECT_THAT(error_of({9, {}, 0, {}}), HasSubstr("wire 9: does not exist"));
   EXPECT_THAT(error_of({0, PointsD::Zero(3, 3), 0, {}}), HasSubstr("is moved by 3 control points"));
@@ -133,20 +115,7 @@ TEST(EvaluatorWires, ChosenVerticesAndBakes) {
   std::vector<Pose> poses;
   for (unsigned f = 0; f < 11; ++f) poses.push_back(test::wired_pose(character, f));
   poses[4].wires.clear();
-  for (const InstructionSet set : all_sets) {
-    if (!is_supported(set)) continue;
-    Evaluator whole(character, {DeltaPrecision::exact, set, {}});
-    Evaluator part(character, {DeltaPrecision::exact, set, {{4, 0, 2}, {1}, {3}}});
-    std::vector<float> frames(poses.size() * 3 * whole.vertex_count()), single;
-    whole.bake(poses, frames);
-    const std::size_t rows[] = {4, 0, 2, whole.first_row(1) + 1, whole.first_row(2) + 3};
-    for (const Pose& pose : poses) {
-      const auto all = evaluated(whole, pose), few = evaluated(part, pose);
-      single.insert(single.end(), all.begin(), all.end());
-      for (std::size_t i = 0; i < few.size(); ++i) EXPECT_EQ(few[i], all[3 * rows[i / 3] + i % 3]);
-    }
-    EXPECT_TRUE(same_bytes(frames, single)) << name_of(set);
-  }
+  test::expect_bakes_and_choices(character, poses);
 }
 
 TEST(EvaluatorWires, ClipsWithWireChannelsBake) {
@@ -182,19 +151,10 @@ TEST(EvaluatorWires, PointsFollowThemAndTheirSlopesToo) {
   for (unsigned seed = 0; seed < 8; ++seed) {
     const Character character = test::wired_rig(seed);
     const Pose pose = test::wired_pose(character, seed);
-    std::vector<SurfacePoint> all;
-    for (std::size_t p = 0; p < character.parts.size(); ++p)
-      for (int v = 0; v < static_cast<int>(character.parts[p].mesh.vertex_count()); ++v)
-        all.push_back({static_cast<int>(p), -1, v, {1, 0, 0}, {0, 1, 2}});
-    PointEvaluator points(character, all);
-    PointsD out;
-    points.positions(pose, out);
-    const auto exact = joined(evaluate(character, pose));
-    double most = 0;
-    for (Eigen::Index i = 0; i < out.size(); ++i)
-      most = std::max(most, std::abs(out(i / 3, i % 3) - exact[static_cast<std::size_t>(i)]));
-    EXPECT_LT(most, 1e-6 * reach(character, pose)) << "seed " << seed;
+    SCOPED_TRACE(seed);
+    test::expect_points_follow(character, pose, 1e-6 * reach(character, pose));
 
+    PointEvaluator points(character, test::all_vertices(character));
     const Freedoms freedoms{{0, 3}, {}, {{1, true, true}}};
     Eigen::MatrixXd slopes;
     points.jacobian(pose, freedoms, slopes);
@@ -205,7 +165,7 @@ TEST(EvaluatorWires, PointsFollowThemAndTheirSlopesToo) {
     PointsD high, low;
     points.positions(up, high);
     points.positions(down, low);
-    for (Eigen::Index i = 0; i < out.size(); ++i)
+    for (Eigen::Index i = 0; i < high.size(); ++i)
       EXPECT_NEAR(slopes(i, 3), (high(i / 3, i % 3) - low(i / 3, i % 3)) / (2 * step), 1e-6);
   }
 }

@@ -7,6 +7,7 @@
 #include <functional>
 
 #include "error_of.h"
+#include "evaluate/expectations.h"
 #include "evaluate/rigs.h"
 #include "mien/character/sliders.h"
 #include "mien/core/error.h"
@@ -16,7 +17,9 @@
 namespace mien {
 namespace {
 
+using test::all_freedoms;
 using test::error_of;
+using test::expect_jacobian;
 using ::testing::HasSubstr;
 
 SurfacePoint at_vertex(int part, int vertex) {
@@ -32,50 +35,6 @@ std::vector<SurfacePoint> some_points(const Character& character) {
     points.push_back({p, 0, -1, {0.2, 0.5, 0.3}, {0, 1, 2}});
   }
   return points;
-}
-
-Freedoms all_freedoms(const Character& character) {
-  Freedoms all;
-  for (std::size_t s = 0; s < character.shapes.size(); ++s) all.shapes.push_back(static_cast<int>(s));
-  for (std::size_t n = 0; n < character.nodes.size(); ++n)
-    all.joints.push_back({static_cast<int>(n), true, true});
-  return all;
-}
-
-/// `pose` with freedom `column` moved by `step`.
-Pose moved(const Character& character, const Pose& pose, Eigen::Index column, double step) {
-  Pose result = pose;
-  const auto shapes = static_cast<Eigen::Index>(character.shapes.size());
-  if (column < shapes) {
-    result.shape_weights.values[column] += step;
-    return result;
-  }
-  Transform& local = result.locals[static_cast<std::size_t>((column - shapes) / 6)];
-  const auto axis = (column - shapes) % 6;
-  if (axis < 3)
-    local.rotation = local.rotation * Eigen::AngleAxisd(step, Eigen::Vector3d::Unit(axis));
-  else
-    local.translation[axis - 3] += step;
-  return result;
-}
-
-/// The Jacobian by central differences, against the analytic one, of the size of the largest entry.
-void expect_jacobian(const Character& character, const Pose& pose) {
-  PointEvaluator evaluator(character, some_points(character));
-  const Freedoms all = all_freedoms(character);
-  Eigen::MatrixXd analytic;
-  evaluator.jacobian(pose, all, analytic);
-  ASSERT_TRUE(analytic.allFinite());
-  const double step = 1e-5, scale = std::max(1e-3, analytic.cwiseAbs().maxCoeff());
-  PointsD up, down;
-  for (Eigen::Index c = 0; c < all.column_count(); ++c) {
-    evaluator.positions(moved(character, pose, c, step), up);
-    evaluator.positions(moved(character, pose, c, -step), down);
-    const PointsD slope = (up - down) / (2 * step);
-    for (Eigen::Index p = 0; p < slope.rows(); ++p)
-      ASSERT_LT((slope.row(p).transpose() - analytic.block<3, 1>(3 * p, c)).norm(), 1e-7 * scale)
-          << "point " << p << ", column " << c;
-  }
 }
 
 TEST(PointEvaluator, InvalidInputs) {
@@ -146,8 +105,8 @@ TEST(PointEvaluator, AgreesWithEvaluate) {
 TEST(PointEvaluator, JacobianIsTheSlope) {
   for (unsigned seed = 0; seed < 8; ++seed) {
     const Character character = test::random_rig(seed);
-    expect_jacobian(character, rest_pose(character));
-    expect_jacobian(character, test::random_pose(character, seed));
+    expect_jacobian(character, rest_pose(character), some_points(character));
+    expect_jacobian(character, test::random_pose(character, seed), some_points(character));
   }
 }
 
@@ -161,7 +120,7 @@ Pose crushed(const Character& character) {
 
 TEST(PointEvaluator, JointUnderAScaleOfZeroHasASlope) {
   const Character character = test::random_rig(4);
-  expect_jacobian(character, crushed(character));
+  expect_jacobian(character, crushed(character), some_points(character));
 }
 
 TEST(PointEvaluator,
@@ -176,25 +135,14 @@ TEST(PointEvaluator,
 
 TEST(PointEvaluator, ShapeRowsAreThePositionsLinearPart) {
   const Character character = test::random_rig(5);
-  const Pose pose = test::random_pose(character, 5);
-  PointEvaluator evaluator(character, some_points(character));
-  Pose other = pose;
-  other.shape_weights.values.setConstant(-0.7);
-  Eigen::MatrixXd rows;
-  evaluator.shape_rows(pose, rows);
-  PointsD from, to;
-  evaluator.positions(pose, from);
-  evaluator.positions(other, to);
-  const Eigen::VectorXd move = rows * (other.shape_weights.values - pose.shape_weights.values);
-  for (Eigen::Index p = 0; p < from.rows(); ++p)
-    EXPECT_LT((to.row(p) - from.row(p) - move.segment<3>(3 * p).transpose()).norm(), 1e-12);
+  test::expect_shape_rows(character, test::random_pose(character, 5), some_points(character), 1e-12);
 }
 
 TEST(PointEvaluator, ShapeWeighedOnOnePartAlone) {
   const Character character = test::random_rig(5);
   Pose pose = test::random_pose(character, 5);
   pose.part_shape_weights.push_back({0, 1, 0.3});
-  expect_jacobian(character, pose);
+  expect_jacobian(character, pose, some_points(character));
 }
 
 TEST(PointEvaluator, SlidersActThroughStopsAndCorrectives) {
@@ -237,7 +185,7 @@ TEST(PointEvaluator, RealFaceInItsClip) {
       std::filesystem::path(MIEN_SHARED_DATA) / "makehuman/caucasian_male_young.glb";
   if (!std::filesystem::exists(file)) GTEST_SKIP() << "no shared data";
   const Character character = load(file);
-  expect_jacobian(character, sample_clip(character, character.clips[0], 7.25));
+  expect_jacobian(character, sample_clip(character, character.clips[0], 7.25), some_points(character));
 }
 
 }  // namespace

@@ -229,12 +229,9 @@ bool fits(const InfluenceBinding& binding, std::size_t vertex_count, const Influ
 }
 
 void ObjectReader::read_binding(const JsonObject& source, InfluenceObject& object) {
-  const auto mesh = source.integer("mesh", 0, 1 << 30);
-  const auto part =
-      std::find_if(sources_.begin(), sources_.end(), [&](const PartSource& s) { return s.mesh == mesh; });
-  if (part == sources_.end()) return;
   InfluenceBinding binding;
-  binding.part = static_cast<int>(part - sources_.begin());
+  binding.part = part_of_mesh(source, sources_);
+  if (binding.part < 0) return;
   binding.vertices = integers(source, "vertices");
   binding.weights = floats(source, "weights");
   if (binding.weights.size() != binding.vertices.size())

@@ -13,6 +13,10 @@ struct PartSource {
   int mesh = -1;
   std::vector<int> shapes;  ///< per morph target: index into Character::shapes
 };
+/// The part that a vendor member's "mesh" became; -1: a mesh that is not in use.
+int part_of_mesh(const JsonObject& source, const std::vector<PartSource>& sources);
+/// The same where there must be one.
+int used_part_of_mesh(const JsonObject& source, const std::vector<PartSource>& sources);
 
 void read_nodes(GltfDocument& document, Character& character);
 void read_skins(GltfDocument& document, Character& character);

@@ -66,14 +66,7 @@ void ClipReader::read_own_weights(const JsonObject& vendor, Clip& clip) {
     if (channel.shape < 0)
       throw io_error(source.place_of("shape"), fmt::format("names {}", source.text("shape").substr(0, 100)),
                      "name one of the shapes");
-    if (source.has("mesh")) {
-      const auto mesh = source.integer("mesh", 0, 1 << 30);
-      const auto part =
-          std::find_if(sources_.begin(), sources_.end(), [&](const PartSource& s) { return s.mesh == mesh; });
-      if (part == sources_.end())
-        throw io_error(source.place_of("mesh"), fmt::format("is {}", mesh), "name a mesh in use");
-      channel.part = static_cast<int>(part - sources_.begin());
-    }
+    if (source.has("mesh")) channel.part = used_part_of_mesh(source, sources_);
     read_keys(source, channel);
     clip.channels.push_back(std::move(channel));
   }

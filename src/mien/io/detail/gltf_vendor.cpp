@@ -55,15 +55,25 @@ Json vendor_point(const SurfacePoint& point) {
   return json;
 }
 
-SurfacePoint read_vendor_point(const JsonObject& source, const std::vector<PartSource>& sources,
-                               const Character& character) {
-  SurfacePoint point;
+int part_of_mesh(const JsonObject& source, const std::vector<PartSource>& sources) {
   const auto mesh = source.integer("mesh", 0, 1 << 30);
   const auto part =
       std::find_if(sources.begin(), sources.end(), [&](const PartSource& s) { return s.mesh == mesh; });
-  if (part == sources.end())
-    throw io_error(source.place_of("mesh"), fmt::format("is {}", mesh), "name a mesh in use");
-  point.part = static_cast<int>(part - sources.begin());
+  return part == sources.end() ? -1 : static_cast<int>(part - sources.begin());
+}
+
+int used_part_of_mesh(const JsonObject& source, const std::vector<PartSource>& sources) {
+  const int part = part_of_mesh(source, sources);
+  if (part < 0)
+    throw io_error(source.place_of("mesh"), fmt::format("is {}", source.integer("mesh", 0, 1 << 30)),
+                   "name a mesh in use");
+  return part;
+}
+
+SurfacePoint read_vendor_point(const JsonObject& source, const std::vector<PartSource>& sources,
+                               const Character& character) {
+  SurfacePoint point;
+  point.part = used_part_of_mesh(source, sources);
   const Mesh& surface = character.parts[point.part].mesh;
   if (!source.has("face")) {
     point.vertex = source.index("vertex", surface.vertex_count());

@@ -112,11 +112,9 @@ Wire read_wire(const JsonObject& source, GltfDocument& document, const std::vect
       wire.falloff.emplace_back(pair[0].get<double>(), pair[1].get<double>());
     }
   for (const JsonObject& binding : source.objects("bindings")) {
-    const auto mesh = binding.integer("mesh", 0, 1 << 30);
-    const auto part =
-        std::find_if(sources.begin(), sources.end(), [&](const PartSource& s) { return s.mesh == mesh; });
-    if (part == sources.end()) continue;
-    WireBinding read = read_binding(binding, document, static_cast<int>(part - sources.begin()));
+    const int part = part_of_mesh(binding, sources);
+    if (part < 0) continue;
+    WireBinding read = read_binding(binding, document, part);
     if (fits(read, character)) wire.bindings.push_back(std::move(read));
   }
   return wire;
