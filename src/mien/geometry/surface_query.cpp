@@ -16,6 +16,7 @@ struct SurfaceQuery::Scene {
   PointsD positions;
   Triangles triangles;
   Points embree_positions;
+  double slack = 0;  // see reach_of
   RTCDevice device = nullptr;
   RTCScene scene = nullptr;
 
@@ -39,9 +40,13 @@ bool is_closer(const SurfaceQuery::Hit& best, int triangle, double distance) {
   return distance < best.distance || (distance == best.distance && triangle < best.triangle);
 }
 
-/// A little slack keeps equally close triangles in the search, so that the tie goes to the lowest number.
-bool shrink(RTCPointQuery& query, double distance) {
-  const float radius = static_cast<float>(distance * (1 + 1e-6));
+/// The slack, what floats lose of a place, keeps equally close triangles in the search: the tie goes to the lowest number.
+float reach_of(double distance, double slack) {
+  return static_cast<float>(distance * (1 + 1e-6) + slack);
+}
+
+bool shrink(RTCPointQuery& query, double distance, double slack) {
+  const float radius = reach_of(distance, slack);
   if (radius >= query.radius) return false;
   query.radius = radius;
   return true;
@@ -50,6 +55,7 @@ bool shrink(RTCPointQuery& query, double distance) {
 struct ClosestSearch {
   const PointsD& positions;
   const Triangles& triangles;
+  double slack;
   const SurfaceQuery::Accept* accept;
   Eigen::Vector3d point;
   SurfaceQuery::Hit best;
@@ -64,20 +70,20 @@ bool visit_triangle(RTCPointQueryFunctionArguments* args) {
   if (!is_closer(search.best, t, distance) || (search.accept && !(*search.accept)(t, found.position)))
     return false;
   search.best = {t, found.barycentric, found.position, distance};
-  return shrink(*args->query, distance);
+  return shrink(*args->query, distance, search.slack);
 }
 
 struct AlikeSearch {
   const PointsD& positions;
   const PointsD& attributes;
   const Triangles& triangles;
+  double slack;
   PointAndAttribute point;
   SurfaceQuery::Hit best;
 };
 
-bool visit_alike(RTCPointQueryFunctionArguments* args) {
-  auto& search = *static_cast<AlikeSearch*>(args->userPtr);
-  const int t = static_cast<int>(args->primID);
+/// Whether triangle `t` is closer than the best one so far.
+bool look_at_alike(AlikeSearch& search, int t) {
   PointAndAttribute corner[3];
   for (int k = 0; k < 3; ++k) {
     const int v = search.triangles(t, k);
@@ -89,7 +95,13 @@ bool visit_alike(RTCPointQueryFunctionArguments* args) {
   const double distance = (found - search.point).norm();
   if (!is_closer(search.best, t, distance)) return false;
   search.best = {t, weights, found.head<3>(), distance};
-  return shrink(*args->query, distance);
+  return true;
+}
+
+bool visit_alike(RTCPointQueryFunctionArguments* args) {
+  auto& search = *static_cast<AlikeSearch*>(args->userPtr);
+  return look_at_alike(search, static_cast<int>(args->primID)) &&
+         shrink(*args->query, search.best.distance, search.slack);
 }
 
 /// Runs `visit` over the triangles around `point`, the nearest boxes first.
@@ -132,22 +144,26 @@ RTCRay make_ray(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction,
 SurfaceQuery::SurfaceQuery(const Points& positions, const Triangles& triangles)
     : SurfaceQuery(PointsD(positions.cast<double>()), triangles) {}
 
-SurfaceQuery::SurfaceQuery(const PointsD& positions, const Triangles& triangles)
+SurfaceQuery::SurfaceQuery(const PointsD& positions, const Triangles& triangles, Build build)
     : scene_(std::make_unique<Scene>()) {
   check_input(positions, triangles);
   scene_->positions = positions;
   scene_->triangles = triangles;
+  scene_->slack = 4 * std::numeric_limits<float>::epsilon() * positions.cwiseAbs().maxCoeff();
   // Embree reads 16 bytes at the last vertex: one row of padding.
   scene_->embree_positions = Points::Zero(positions.rows() + 1, 3);
   scene_->embree_positions.topRows(positions.rows()) = positions.cast<float>();
   scene_->device = rtcNewDevice(nullptr);
   scene_->scene = rtcNewScene(scene_->device);
   rtcSetSceneFlags(scene_->scene, RTC_SCENE_FLAG_ROBUST);
+  const RTCBuildQuality quality = build == Build::fast ? RTC_BUILD_QUALITY_LOW : RTC_BUILD_QUALITY_MEDIUM;
+  rtcSetSceneBuildQuality(scene_->scene, quality);
   RTCGeometry geometry = rtcNewGeometry(scene_->device, RTC_GEOMETRY_TYPE_TRIANGLE);
   rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
                              scene_->embree_positions.data(), 0, 3 * sizeof(float), positions.rows());
   rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, scene_->triangles.data(),
                              0, 3 * sizeof(int), triangles.rows());
+  rtcSetGeometryBuildQuality(geometry, quality);
   rtcCommitGeometry(geometry);
   rtcAttachGeometry(scene_->scene, geometry);
   rtcReleaseGeometry(geometry);
@@ -164,7 +180,8 @@ SurfaceQuery::Hit SurfaceQuery::closest(const Eigen::Vector3d& point, double max
 
 SurfaceQuery::Hit SurfaceQuery::closest(const Eigen::Vector3d& point, double max_distance,
                                         const Accept& accept) const {
-  ClosestSearch search{scene_->positions, scene_->triangles, accept ? &accept : nullptr, point, {}};
+  ClosestSearch search{
+      scene_->positions, scene_->triangles, scene_->slack, accept ? &accept : nullptr, point, {}};
   search.best.distance = max_distance;
   search.best.triangle = no_triangle;
   query_around(scene_->scene, point, max_distance, visit_triangle, &search);
@@ -172,11 +189,12 @@ SurfaceQuery::Hit SurfaceQuery::closest(const Eigen::Vector3d& point, double max
 }
 
 SurfaceQuery::Hit SurfaceQuery::most_alike(const Eigen::Vector3d& point, const Eigen::Vector3d& attribute,
-                                           const PointsD& attributes) const {
-  AlikeSearch search{scene_->positions, attributes, scene_->triangles, {}, {}};
+                                           const PointsD& attributes, int guess) const {
+  AlikeSearch search{scene_->positions, attributes, scene_->triangles, scene_->slack, {}, {}};
   search.point << point, attribute;
   search.best.triangle = no_triangle;
-  query_around(scene_->scene, point, std::numeric_limits<double>::infinity(), visit_alike, &search);
+  if (guess >= 0) look_at_alike(search, guess);
+  query_around(scene_->scene, point, reach_of(search.best.distance, search.slack), visit_alike, &search);
   if (search.best.triangle == no_triangle) return Hit{};
   search.best.distance = (search.best.position - point).norm();
   return search.best;

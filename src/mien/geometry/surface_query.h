@@ -25,9 +25,13 @@ class SurfaceQuery {
   /// Says whether a triangle may be hit at all.
   using Accept = std::function<bool(int triangle, const Eigen::Vector3d& position)>;
 
+  /// How the hierarchy is built: `fast` takes a quarter of the time, for a surface that has moved before it was asked much
+  /// (10 against 2.5 ms at 29,000 triangles); the answers are the same.
+  enum class Build { good, fast };
+
   ///   positions  #V x 3, finite; triangles #T x 3 into them; both are copied
   ///   throws     invalid_input: no triangles, an index out of range, a position that is not finite
-  SurfaceQuery(const PointsD& positions, const Triangles& triangles);
+  SurfaceQuery(const PointsD& positions, const Triangles& triangles, Build build = Build::good);
   SurfaceQuery(const Points& positions, const Triangles& triangles);
   ~SurfaceQuery();
   SurfaceQuery(SurfaceQuery&&) noexcept;
@@ -44,8 +48,9 @@ class SurfaceQuery {
   /// length, say): the least |x - point|^2 + |a(x) - attribute|^2, a linear in every triangle. `distance` is that of the
   /// places alone. Cost: grows with the number of triangles that are as close as the attributes differ.
   ///   attributes  #V x 3
-  Hit most_alike(const Eigen::Vector3d& point, const Eigen::Vector3d& attribute,
-                 const PointsD& attributes) const;
+  ///   guess       a triangle that may be it, or -1: looked at first, so that less is searched; the answer is the same
+  Hit most_alike(const Eigen::Vector3d& point, const Eigen::Vector3d& attribute, const PointsD& attributes,
+                 int guess = -1) const;
 
   /// The first triangle along the ray from `origin` in `direction` (unit) between `near` and `far`.
   Hit first_along(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, double near,

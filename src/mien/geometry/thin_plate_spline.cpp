@@ -45,6 +45,16 @@ void check_normalised(const PointsD& centres) {
                         "one landmark or more off that plane");
 }
 
+/// #L: what is taken from the kernel's diagonal.
+Eigen::VectorXd smoothing_of(const ThinPlateSpline::Options& options, Eigen::Index count) {
+  if (options.spread.size() == 0) return Eigen::VectorXd::Constant(count, options.smoothing);
+  if (options.spread.size() != count || !(options.spread.minCoeff() >= 0) || !options.spread.allFinite())
+    throw invalid_input("thin-plate spline",
+                        "a spread of " + std::to_string(options.spread.size()) + " numbers",
+                        "one of 0 or more for each of the " + std::to_string(count) + " landmarks");
+  return options.smoothing * options.spread;
+}
+
 Eigen::MatrixXd kernel_matrix(const PointsD& centres) {
   Eigen::MatrixXd kernel(centres.rows(), centres.rows());
   for (Eigen::Index i = 0; i < centres.rows(); ++i)
@@ -85,7 +95,7 @@ ThinPlateSpline::ThinPlateSpline(const PointsD& from, const PointsD& to, const O
   const Eigen::Index n = from.rows();
   Eigen::MatrixXd system = Eigen::MatrixXd::Zero(n + 4, n + 4);
   system.topLeftCorner(n, n) = kernel_matrix(centres_);
-  system.topLeftCorner(n, n).diagonal().array() -= options.smoothing;
+  system.topLeftCorner(n, n).diagonal() -= smoothing_of(options, n);
   system.topRightCorner(n, 4) = affine_rows(centres_);
   system.bottomLeftCorner(4, n) = system.topRightCorner(n, 4).transpose();
   Eigen::MatrixXd right = Eigen::MatrixXd::Zero(n + 4, 3);

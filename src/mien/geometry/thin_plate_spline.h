@@ -20,12 +20,14 @@ class ThinPlateSpline {
     /// matrix L_n^-1 K L_n^-1 = L_n^-1, smallest eigenvalues first); -1: all. 0 leaves the affine part of the
     /// whole map.
     int principal_warps = -1;
+    /// #L factors of the smoothing, 0 or more: a landmark with a larger one may be missed by more. Empty: 1.
+    Eigen::VectorXd spread = {};
   };
 
   ///   from, to  #L x 3 landmarks before and after
   ///   throws    invalid_input: fewer than 4 landmarks, sizes that differ, numbers that are not finite, two
   ///             coincident landmarks, or all landmarks in one plane (the affine part is then not determined);
-  ///             names the rows
+  ///             names the rows; a spread of another length or below 0
   ///   cost      O(#L^3) once, O(#L) a point
   ThinPlateSpline(const PointsD& from, const PointsD& to, const Options& options);
   ThinPlateSpline(const PointsD& from, const PointsD& to) : ThinPlateSpline(from, to, Options{}) {}

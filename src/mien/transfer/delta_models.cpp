@@ -92,7 +92,9 @@ std::vector<int> farthest_points(const PointsD& points, int count) {
   std::vector<int> chosen;
   if (points.rows() == 0) return chosen;
   Eigen::Index next = 0;
-  (points.rowwise() - points.colwise().mean()).rowwise().squaredNorm().maxCoeff(&next);
+  const Eigen::RowVector3d middle =
+      points.colwise().mean();  // as an expression it would be summed anew for each row
+  (points.rowwise() - middle).rowwise().squaredNorm().maxCoeff(&next);
   const Eigen::Matrix<double, Eigen::Dynamic, 3> columns = points;
   Eigen::ArrayXd distance = Eigen::ArrayXd::Constant(points.rows(), std::numeric_limits<double>::infinity());
   while (static_cast<int>(chosen.size()) < std::min<Eigen::Index>(count, points.rows())) {

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "mien/core/error.h"
+#include "mien/core/parallel.h"
 #include "mien/geometry/laplacian.h"
 #include "mien/geometry/openness.h"
 #include "mien/geometry/thin_plate_spline.h"
@@ -21,9 +22,11 @@ namespace {
 
 struct Stage {
   double stiffness;
-  double landmarks;  ///< weight of all landmarks if there are 68
-  double
-      tangential;  ///< while the surface is stiff, closest points say where to slide; at the end they only say how far
+  double landmarks;   ///< weight of all landmarks if there are 68
+  double tangential;  ///< how much closest points say where to slide, beside how far
+  /// How far a match may be, in face sizes: the start may be far off where there are no landmarks (a cranium), later only
+  /// what lies close is the same place.
+  double reach;
 };
 /// Weight of one openness level in one direction, while the stiffness is at least `curves_until`: lid and lip lines say
 /// where features are, not where each vertex of a margin belongs.
@@ -34,40 +37,62 @@ constexpr double least_border = 1.0;
 constexpr double outer_skin = 0.4;
 /// Rays a vertex: twice as many place the lid and lip lines no better.
 constexpr int openness_rays = 32;
-/// While the surface is stiff this many vertices of either side say as much as all.
-constexpr int coarse_vertices = 6000;
+/// While the surface is stiff this many vertices of either side say as much as all, and fewer about maps of the whole.
+constexpr int coarse_vertices = 6000, whole_vertices = 2000;
 
-/// From the whole face's proportions down to features of a few edges. Landmarks keep a little of their weight to the end:
-/// there they are better than a closest point on a lip that lies on another.
-constexpr std::array<Stage, 10> schedule{{{3, 2, .35},
-                                          {.5, 2, .35},
-                                          {.1, 2, .35},
-                                          {.03, .6, .35},
-                                          {.01, .2, .35},
-                                          {.003, .06, .35},
-                                          {.001, .02, .12},
-                                          {2e-4, .02, .12},
-                                          {5e-5, .02, .12},
-                                          {1e-5, .02, .12}}};
+/// From the whole face's proportions down to features of a few edges; where most of the sliding is done the stiffness
+/// stays for a second round. Landmarks keep a little of their weight to the end: there they are better than a closest
+/// point on a lip that lies on another.
+constexpr std::array<Stage, 12> schedule{{{3, 2, .18, .1},
+                                          {.5, 2, .18, .08},
+                                          {.1, 2, .18, .064},
+                                          {.1, 2, .18, .064},
+                                          {.03, .6, .7, .051},
+                                          {.03, .6, .7, .051},
+                                          {.01, .2, .7, .041},
+                                          {.01, .2, .7, .041},
+                                          {.003, .06, .7, .033},
+                                          {5e-4, .02, .12, .024},
+                                          {1e-4, .02, .12, .019},
+                                          {1e-5, .02, .12, .013}}};
+/// Each stage but the last goes on by this share of what it moved: closest points hold what should slide.
+constexpr double further = 0.5;
 
 /// What normals count as in a match (detail/matching.h), in face sizes. Far from all landmarks they hold the surface from
-/// the start; near them the landmarks do, and normals only tell the sides of a lid from its rim, once it lies there.
+/// the start; near them the landmarks do, and normals only tell the sides of a lid from its rim, once it lies there. Where no landmark
+/// holds they say less.
 struct Likeness {
   double near, far, bend;
 };
-constexpr Likeness while_stiff{0, .2, 0}, while_soft{.015, .03, .03};
+constexpr Likeness while_stiff{0, .3, 0}, nothing_holds{0, .2, 0}, while_soft{.015, .03, .03};
 /// Where proportions differ so much that normals make the skin fold (more than this share of its triangles), the soft
 /// stages go by place alone and the last, softest one is left out.
 constexpr Likeness by_place{0, 0, 0};
 constexpr double most_folds = 2e-3;
-constexpr std::size_t stiff_stages = 5;
-/// Distances from the nearest landmark between which near becomes far, in face sizes.
-constexpr double near_landmarks = .08, far_from_landmarks = .3;
+constexpr std::size_t stiff_stages = 8;
+/// Distances from the nearest landmark between which near becomes far, in face sizes. While the surface is stiff, what
+/// faces another way than the landmark is further from it: the chin's underside is not held by the chin's tip.
+constexpr double near_landmarks = .08, far_from_landmarks = .3, turned_away = .08;
+/// A landmark is clicked as well as this, in face sizes; one that is a vertex may belong this share of an edge away.
+constexpr double landmark_error = .005, share_of_edge = .15;
 
-/// How far a match may be, in face sizes: the start may be far off where there are no landmarks (a cranium), later only
-/// what lies close is the same place.
-double reach_at(std::size_t stage) {
-  return std::max(0.01, 0.1 * std::pow(0.8, static_cast<double>(stage)));
+std::vector<SurfaceQuery::Hit> closest_points(const Surface& surface, const PointsD& points) {
+  const SurfaceQuery query(surface.positions, surface.triangles);
+  std::vector<SurfaceQuery::Hit> hits;
+  for (Eigen::Index i = 0; i < points.rows(); ++i) hits.push_back(query.closest(points.row(i).transpose()));
+  return hits;
+}
+
+/// #L x 3, unit length.
+PointsD normals_at(const std::vector<SurfaceQuery::Hit>& at, const detail::MatchSurface& surface) {
+  PointsD normals = PointsD::Zero(static_cast<Eigen::Index>(at.size()), 3);
+  for (Eigen::Index i = 0; i < normals.rows(); ++i) {
+    const SurfaceQuery::Hit& hit = at[static_cast<std::size_t>(i)];
+    for (int k = 0; k < 3; ++k)
+      normals.row(i) += hit.barycentric[k] * surface.normals.row(surface.triangles(hit.triangle, k));
+  }
+  normals.rowwise().normalize();
+  return normals;
 }
 
 Eigen::VectorXd normalised_areas(const Surface& surface) {
@@ -92,17 +117,59 @@ void add_landmark_wishes(const std::vector<SurfaceQuery::Hit>& at, const Triangl
   }
 }
 
+/// Places that face somewhere, #V x 6: turned away by a radian is as far as `turn`.
+Eigen::MatrixXd facing(const PointsD& positions, const PointsD& normals, double turn) {
+  Eigen::MatrixXd places(positions.rows(), 6);
+  places << positions, turn * normals;
+  return places;
+}
+
 /// #V: 0 within `near` of a landmark, 1 from `far` on, smooth between; 1 where there are none.
-Eigen::VectorXd far_from(const PointsD& landmarks, const PointsD& positions, double near, double far) {
-  Eigen::VectorXd result = Eigen::VectorXd::Ones(positions.rows());
+Eigen::VectorXd far_from(const Eigen::MatrixXd& landmarks, const Eigen::MatrixXd& places, double near,
+                         double far) {
+  Eigen::VectorXd result = Eigen::VectorXd::Ones(places.rows());
   if (landmarks.rows() == 0) return result;
-  for (Eigen::Index v = 0; v < positions.rows(); ++v) {
-    const double distance =
-        std::sqrt((landmarks.rowwise() - positions.row(v)).rowwise().squaredNorm().minCoeff());
-    const double t = std::clamp((distance - near) / (far - near), 0.0, 1.0);
-    result[v] = t * t * (3 - 2 * t);
-  }
+  parallel_for(static_cast<std::size_t>(places.rows()), 256, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t v = begin; v < end; ++v) {
+      const Eigen::Index row = static_cast<Eigen::Index>(v);
+      const double distance =
+          std::sqrt((landmarks.rowwise() - places.row(row)).rowwise().squaredNorm().minCoeff());
+      const double t = std::clamp((distance - near) / (far - near), 0.0, 1.0);
+      result[row] = t * t * (3 - 2 * t);
+    }
+  });
   return result;
+}
+
+/// #V: the mean length of each vertex's edges.
+Eigen::VectorXd edge_lengths(const Surface& surface) {
+  Eigen::VectorXd sum = Eigen::VectorXd::Zero(surface.positions.rows()), count = sum;
+  for (Eigen::Index t = 0; t < surface.triangles.rows(); ++t)
+    for (int k = 0; k < 3; ++k) {
+      const int a = surface.triangles(t, k), b = surface.triangles(t, (k + 1) % 3);
+      const double length = (surface.positions.row(a) - surface.positions.row(b)).norm();
+      for (const int v : {a, b}) {
+        sum[v] += length;
+        count[v] += 1;
+      }
+    }
+  return sum.cwiseQuotient(count.cwiseMax(1));
+}
+
+/// #L: how much further off than a well-clicked landmark of a fine mesh each of these may be, squared: one that sits on a
+/// vertex had no better vertex near.
+Eigen::VectorXd landmark_spread(const std::vector<SurfaceQuery::Hit>& at, const Surface& surface,
+                                double unit) {
+  constexpr double on_vertex = .999;
+  const Eigen::VectorXd edges = edge_lengths(surface);
+  Eigen::VectorXd spread = Eigen::VectorXd::Ones(static_cast<Eigen::Index>(at.size()));
+  for (std::size_t i = 0; i < at.size(); ++i) {
+    int corner = 0;
+    if (at[i].barycentric.maxCoeff(&corner) < on_vertex) continue;
+    const double error = share_of_edge * edges[surface.triangles(at[i].triangle, corner)] / unit;
+    spread[static_cast<Eigen::Index>(i)] += error * error / (landmark_error * landmark_error);
+  }
+  return spread;
 }
 
 Eigen::VectorXd trust_of(const RegistrationOptions& options, Eigen::Index count) {
@@ -118,42 +185,47 @@ struct Fitting {
   const Surface& source;
   const Surface fixed_surface;
   const detail::MatchSurface& fixed;
-  const PointsD &goals, &holding;
-  const Eigen::VectorXd& trust;
+  const PointsD& goals;
+  const Eigen::MatrixXd& holding;         // #L x 6, facing
+  const Eigen::VectorXd& landmark_share;  // #L, of the schedule's weights
+  const std::vector<SurfaceQuery::Hit>& landmarks;
   const Registration& result;
   const RegistrationOptions& options;
   std::vector<detail::CurvePiece> source_curves, target_curves;
-  std::vector<SurfaceQuery::Hit> landmarks;
   Eigen::VectorXd masses;
   std::vector<char> boundary;
+  mutable detail::MatchMemory memory;  // makes matching faster, changes nothing
 
-  void find_features(const PointsD& source_landmarks) {
+  void find_features() {
     masses = normalised_areas(source);
     boundary = boundary_vertices(static_cast<std::size_t>(source.positions.rows()), source.triangles);
-    const SurfaceQuery query(source.positions, source.triangles);
-    for (Eigen::Index i = 0; i < source_landmarks.rows(); ++i)
-      landmarks.push_back(query.closest(source_landmarks.row(i).transpose()));
     if (!options.feature_curves) return;
     source_curves = detail::feature_curves(source, result.source_openness,
                                            least_border * result.unit / result.similarity.scale);
     target_curves = detail::feature_curves(fixed_surface, result.target_openness, least_border);
   }
 
-  /// All that pulls at the source when it lies at `positions`.
+  const Likeness& stiff_likeness() const {
+    return options.landmarks_hold && landmark_share.maxCoeff() > 0 ? while_stiff : nothing_holds;
+  }
+
+  /// All that pulls at the source when it lies at `positions`; while it is stiff at most `most_vertices` of either side ask.
   std::vector<detail::Wish> wishes(const PointsD& positions, const Stage& stage, const Likeness& likeness,
-                                   double reach) const {
-    detail::MatchSurface moving(positions, source.triangles, result.source_openness, masses, boundary);
-    moving.far = far_from(holding, positions, near_landmarks, far_from_landmarks);
+                                   int most_vertices = coarse_vertices) const {
+    detail::MatchSurface moving(positions, source.triangles, result.source_openness, masses, boundary,
+                                SurfaceQuery::Build::fast);
+    moving.far =
+        far_from(holding, facing(positions, moving.normals, turned_away), near_landmarks, far_from_landmarks);
     const bool coarse = stage.stiffness >= curves_until;
     detail::MatchOptions match;
-    match.least_reach = reach;
+    match.least_reach = stage.reach;
     match.tangential = stage.tangential;
     match.normal_length = likeness.near;
     match.far_normal_length = likeness.far;
     match.bend_length = likeness.bend;
-    match.most_vertices = coarse ? coarse_vertices : std::numeric_limits<int>::max();
-    std::vector<detail::Wish> all = detail::match_both_ways(moving, fixed, match);
-    add_landmark_wishes(landmarks, source.triangles, goals, stage.landmarks / 68 * trust, all);
+    match.most_vertices = coarse ? most_vertices : std::numeric_limits<int>::max();
+    std::vector<detail::Wish> all = detail::match_both_ways(moving, fixed, match, memory);
+    add_landmark_wishes(landmarks, source.triangles, goals, stage.landmarks / 68 * landmark_share, all);
     if (coarse) {
       const auto pulls = detail::match_curves(source_curves, {positions, source.triangles}, target_curves,
                                               fixed_surface, curve_weight);
@@ -184,12 +256,12 @@ struct Fitting {
   /// Moves what lies far from all landmarks by quadratic maps of the whole skin.
   void fit_whole(PointsD& positions) const {
     constexpr int rounds = 4;
-    constexpr double ridge = 1e-4, reach = 0.3, near = 0.15, distant = 0.6;
-    const Stage whole{schedule[0].stiffness, 1, 0.1};
+    constexpr double ridge = 1e-4, near = 0.15, distant = 0.6;
+    constexpr Stage whole{schedule[0].stiffness, 1, 0.1, 0.3};
     for (int round = 0; round < rounds; ++round) {
-      const PointsD shift =
-          detail::fit_polynomial(positions, wishes(positions, whole, while_stiff, reach), ridge);
-      positions += far_from(holding, positions, near, distant).asDiagonal() * shift;
+      const PointsD shift = detail::fit_polynomial(
+          positions, wishes(positions, whole, stiff_likeness(), whole_vertices), ridge);
+      positions += far_from(holding.leftCols<3>(), positions, near, distant).asDiagonal() * shift;
     }
   }
 };
@@ -205,22 +277,30 @@ Registration register_surfaces(const Surface& source, const Surface& target, con
   const Eigen::RowVector3d centre = target_landmarks.colwise().mean();
   const auto normalise = [&](const PointsD& p) { return PointsD((p.rowwise() - centre) / result.unit); };
   const PointsD fixed_points = normalise(target.positions), goals = normalise(target_landmarks);
-  const Eigen::VectorXd trust = trust_of(options, goals.rows());
-  const PointsD holding = options.landmarks_hold ? goals : PointsD(0, 3);
+  const std::vector<SurfaceQuery::Hit> landmarks = closest_points(source, source_landmarks);
 
   result.source_openness = openness(source.positions, source.triangles, openness_rays);
   result.target_openness = openness(target.positions, target.triangles, openness_rays);
   detail::MatchSurface fixed(
       fixed_points, target.triangles, result.target_openness, normalised_areas(target),
       boundary_vertices(static_cast<std::size_t>(fixed_points.rows()), target.triangles));
+  const std::vector<SurfaceQuery::Hit> marked = closest_points(target, target_landmarks);
+  Eigen::MatrixXd holding(0, 6);
+  if (options.landmarks_hold) holding = facing(goals, normals_at(marked, fixed), turned_away);
+  fixed.far =
+      far_from(holding, facing(fixed_points, fixed.normals, turned_away), near_landmarks, far_from_landmarks);
 
-  fixed.far = far_from(holding, fixed_points, near_landmarks, far_from_landmarks);
-
-  Fitting fitting{
-      source, {fixed_points, target.triangles}, fixed, goals, holding, trust, result, options, {}, {}, {}, {},
-      {}};
-  fitting.find_features(source_landmarks);
-  const ThinPlateSpline spline(source_landmarks, goals, {options.smoothing, -1});
+  const Eigen::VectorXd spread = landmark_spread(marked, target, result.unit);
+  const Eigen::VectorXd share = trust_of(options, goals.rows()).cwiseQuotient(spread);
+  Fitting fitting{source,    {fixed_points, target.triangles},
+                  fixed,     goals,
+                  holding,   share,
+                  landmarks, result,
+                  options,   {},
+                  {},        {},
+                  {}};
+  fitting.find_features();
+  const ThinPlateSpline spline(source_landmarks, goals, {options.smoothing, -1, spread});
   PointsD start = spline(source.positions);
   fitting.fit_whole(start);
   const detail::DisplacementSolver solver(start, source.triangles);
@@ -228,12 +308,13 @@ Registration register_surfaces(const Surface& source, const Surface& target, con
   const auto run = [&](PointsD u, std::size_t end, const Likeness& likeness) {
     for (std::size_t s = done; s < end; ++s) {
       report_progress(options.progress, "registering", static_cast<double>(s) / schedule.size());
-      const Stage& stage = schedule[s];
-      u = solver.solve(stage.stiffness, fitting.wishes(start + u, stage, likeness, reach_at(s)), u);
+      const PointsD pulled =
+          solver.solve(schedule[s].stiffness, fitting.wishes(start + u, schedule[s], likeness), u);
+      u = s + 1 < end ? PointsD(pulled + further * (pulled - u)) : pulled;
     }
     return u;
   };
-  const PointsD stiff = run(PointsD::Zero(start.rows(), 3), stiff_stages, while_stiff);
+  const PointsD stiff = run(PointsD::Zero(start.rows(), 3), stiff_stages, fitting.stiff_likeness());
   done = stiff_stages;
   PointsD u = run(stiff, schedule.size(), while_soft);
   const double folds = fitting.folded(start + u);

@@ -39,11 +39,12 @@ struct Registration {
 };
 
 /// Non-rigid registration. The landmarks' spline, and far from all landmarks quadratic maps of the whole skin, give the
-/// start; a bi-Laplacian prior on the displacement from it loses its stiffness over ten stages. Closest points both ways
+/// start; a bi-Laplacian prior on the displacement from it loses its stiffness over twelve rounds. Closest points both ways
 /// pull, closest in place and, far from landmarks and at the end, in normal too; with gates on normal, distance, border and
-/// openness; point to plane with a tangential share of a third that ends at an eighth, more where the surface bends (a
-/// lid's rim). Where the skin would fold by that (cartoons), the soft stages are done again by place alone. Lid and lip lines and the neck's border pull onto each other while the surface is stiff; landmarks
-/// are priors that fade to a hundredth.
+/// openness; point to plane with a tangential share, more where the surface bends (a lid's rim); half a step further than
+/// they pull, for surfaces slide slowly. Where the skin would fold by that (cartoons), the soft stages are done again by
+/// place alone. Lid and lip lines and the neck's border pull onto each other while the surface is stiff; landmarks are
+/// priors that fade to a hundredth, and say less where they are vertices of a coarse mesh.
 ///   source_landmarks, target_landmarks  #L x 3, pairs by row, on or near the surfaces
 ///   throws  invalid_input: what ThinPlateSpline and fit_similarity refuse; surfaces without triangles
 ///   cost    about 1.5 s for 14,000 vertices on either side, one core

@@ -46,7 +46,7 @@ PointsD weighed_normals(const MatchSurface& surface, const MatchOptions& options
 }
 
 std::vector<SurfaceQuery::Hit> nearest(const MatchSurface& from, const MatchSurface& to, const Asking& ask,
-                                       const MatchOptions& options) {
+                                       const MatchOptions& options, std::vector<int>& last) {
   std::vector<SurfaceQuery::Hit> hits(static_cast<std::size_t>(ask.count));
   const bool by_normals = options.normal_length > 0 || options.far_normal_length > 0;
   PointsD from_normals, to_normals;
@@ -54,12 +54,15 @@ std::vector<SurfaceQuery::Hit> nearest(const MatchSurface& from, const MatchSurf
     from_normals = weighed_normals(from, options);
     to_normals = weighed_normals(to, options);
   }
+  last.resize(static_cast<std::size_t>(from.positions.rows()), -1);
   parallel_for(hits.size(), 64, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      const Eigen::Vector3d point = from.positions.row(ask.vertex(i)).transpose();
-      hits[i] = by_normals
-                    ? to.query.most_alike(point, from_normals.row(ask.vertex(i)).transpose(), to_normals)
-                    : to.query.closest(point);
+      const Eigen::Index v = ask.vertex(i);
+      const Eigen::Vector3d point = from.positions.row(v).transpose();
+      int& guess = last[static_cast<std::size_t>(v)];
+      hits[i] = by_normals ? to.query.most_alike(point, from_normals.row(v).transpose(), to_normals, guess)
+                           : to.query.closest(point);
+      guess = hits[i].triangle;
     }
   });
   return hits;
@@ -67,9 +70,9 @@ std::vector<SurfaceQuery::Hit> nearest(const MatchSurface& from, const MatchSurf
 
 /// For each asking vertex of `from` its match on `to`; triangle -1 where the gates reject.
 std::vector<SurfaceQuery::Hit> match(const MatchSurface& from, const MatchSurface& to,
-                                     const MatchOptions& options) {
+                                     const MatchOptions& options, std::vector<int>& last) {
   const Asking ask = asking(from, options.most_vertices);
-  std::vector<SurfaceQuery::Hit> hits = nearest(from, to, ask, options);
+  std::vector<SurfaceQuery::Hit> hits = nearest(from, to, ask, options, last);
   std::vector<double> distances(hits.size());
   std::transform(hits.begin(), hits.end(), distances.begin(), [](const auto& hit) { return hit.distance; });
   std::nth_element(distances.begin(), distances.begin() + distances.size() / 2, distances.end());
@@ -108,14 +111,14 @@ double across(const MatchSurface& surface, const SurfaceQuery::Hit& hit, const M
 }  // namespace
 
 MatchSurface::MatchSurface(const PointsD& p, const Triangles& t, const Eigen::VectorXd& o,
-                           const Eigen::VectorXd& m, const std::vector<char>& b)
+                           const Eigen::VectorXd& m, const std::vector<char>& b, SurfaceQuery::Build build)
     : positions(p),
       normals(vertex_normals(p, t)),
       triangles(t),
       openness(o),
       masses(m),
       boundary(b),
-      query(p, t) {}
+      query(p, t, build) {}
 
 Eigen::Vector3d MatchSurface::triangle_normal(int triangle) const {
   const Eigen::Vector3d a = positions.row(triangles(triangle, 0)).transpose();
@@ -125,10 +128,10 @@ Eigen::Vector3d MatchSurface::triangle_normal(int triangle) const {
 }
 
 std::vector<Wish> match_both_ways(const MatchSurface& moving, const MatchSurface& fixed,
-                                  const MatchOptions& options) {
+                                  const MatchOptions& options, MatchMemory& memory) {
   std::vector<Wish> wishes;
   wishes.reserve(static_cast<std::size_t>(moving.positions.rows() + fixed.positions.rows()));
-  const auto forward = match(moving, fixed, options);
+  const auto forward = match(moving, fixed, options, memory.forward);
   const Asking forward_ask = asking(moving, options.most_vertices);
   for (std::size_t i = 0; i < forward.size(); ++i) {
     const SurfaceQuery::Hit& hit = forward[i];
@@ -142,7 +145,7 @@ std::vector<Wish> match_both_ways(const MatchSurface& moving, const MatchSurface
                       mass,
                       across(fixed, hit, options) * mass});
   }
-  const auto backward = match(fixed, moving, options);
+  const auto backward = match(fixed, moving, options, memory.backward);
   const Asking backward_ask = asking(fixed, options.most_vertices);
   for (std::size_t i = 0; i < backward.size(); ++i) {
     const SurfaceQuery::Hit& hit = backward[i];

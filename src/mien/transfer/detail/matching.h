@@ -19,7 +19,8 @@ struct MatchSurface {
   SurfaceQuery query;
 
   MatchSurface(const PointsD& positions, const Triangles& triangles, const Eigen::VectorXd& openness,
-               const Eigen::VectorXd& masses, const std::vector<char>& boundary);
+               const Eigen::VectorXd& masses, const std::vector<char>& boundary,
+               SurfaceQuery::Build build = SurfaceQuery::Build::good);
   Eigen::Vector3d triangle_normal(int triangle) const;
 };
 
@@ -36,9 +37,15 @@ struct MatchOptions {
   int most_vertices = std::numeric_limits<int>::max();  ///< of either side that ask, evenly chosen by number
 };
 
+/// The triangles that the last matching found, by asking vertex: where the next one looks first. Changes no result.
+struct MatchMemory {
+  std::vector<int> forward,
+      backward;  ///< #V of the moving and of the fixed surface, -1: none; empty: nothing known
+};
+
 /// Wishes that bring the moving vertices onto the fixed surface and the fixed vertices onto the moving surface, each
 /// direction's weights summing to about one. Vertices are those of `moving`.
 std::vector<Wish> match_both_ways(const MatchSurface& moving, const MatchSurface& fixed,
-                                  const MatchOptions& options);
+                                  const MatchOptions& options, MatchMemory& memory);
 
 }  // namespace mien::detail
