@@ -95,6 +95,27 @@ TEST(surface_query, an_attribute_tells_close_places_apart) {
   EXPECT_TRUE(plain.position.isApprox(query.closest(point).position, 1e-9));
 }
 
+TEST(surface_query, a_guess_and_a_fast_build_change_no_answer) {
+  Surface s = grid(12);
+  s.positions.col(2) = (s.positions.col(0).array() * 0.9).sin() + (s.positions.col(1).array() * 0.7).cos();
+  s.positions = (s.positions / 6).rowwise() - Eigen::RowVector3d(1, 1, 0);
+  const PointsD normals = 0.3 * vertex_normals(s.positions, s.triangles);
+  const SurfaceQuery good(s.positions, s.triangles);
+  const SurfaceQuery fast(s.positions, s.triangles, SurfaceQuery::Build::fast);
+  const PointsD points = random_points(200, 1);
+  for (Eigen::Index i = 0; i < points.rows(); ++i) {
+    const Vector3d point = points.row(i).transpose(), normal = 0.3 * points.row((i + 1) % 200).transpose();
+    EXPECT_EQ(fast.closest(point).triangle, good.closest(point).triangle);
+    const auto alike = good.most_alike(point, normal, normals);
+    for (const int guess : {alike.triangle, 0, static_cast<int>(s.triangles.rows()) - 1}) {
+      const auto guessed = fast.most_alike(point, normal, normals, guess);
+      EXPECT_EQ(guessed.triangle, alike.triangle);
+      EXPECT_EQ(guessed.position, alike.position);
+      EXPECT_EQ(guessed.distance, alike.distance);
+    }
+  }
+}
+
 TEST(surface_query, rays) {
   const Surface s = cube();
   const SurfaceQuery query(s.positions, s.triangles);

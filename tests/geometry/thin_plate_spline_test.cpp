@@ -96,6 +96,31 @@ TEST(thin_plate_spline, smoothing_bends_less_and_stays_near) {
   }
 }
 
+TEST(thin_plate_spline, a_wide_spread_leaves_a_landmark_out) {
+  PointsD from = random_points(30, 4), to = from + 0.1 * random_points(30, 5);
+  from.row(0) = from.colwise().mean();  // not on the box, which smoothing is relative to
+  Options alike{.smoothing = 1e-2};
+  const ThinPlateSpline plain(from, to, alike);
+  alike.spread = Eigen::VectorXd::Ones(30);
+  const PointsD points = random_points(20, 6);
+  EXPECT_EQ(ThinPlateSpline(from, to, alike)(points), plain(points));
+
+  Options wide = alike;
+  wide.spread[0] = 1e12;
+  const ThinPlateSpline without(from.bottomRows(29), to.bottomRows(29), Options{.smoothing = 1e-2});
+  EXPECT_TRUE(ThinPlateSpline(from, to, wide)(points).isApprox(without(points), 1e-8));
+  Options narrow = alike;
+  narrow.spread[0] = 0;
+  EXPECT_TRUE(ThinPlateSpline(from, to, narrow)(PointsD(from.topRows(1))).isApprox(to.topRows(1), 1e-9));
+
+  narrow.spread[3] = -1;
+  EXPECT_EQ(failure_of([&] { ThinPlateSpline(from, to, narrow); }),
+            "thin-plate spline: a spread of 30 numbers; one of 0 or more for each of the 30 landmarks");
+  narrow.spread.conservativeResize(29);
+  EXPECT_EQ(failure_of([&] { ThinPlateSpline(from, to, narrow); }),
+            "thin-plate spline: a spread of 29 numbers; one of 0 or more for each of the 30 landmarks");
+}
+
 TEST(thin_plate_spline, principal_warps_are_orthonormal_eigenvectors) {
   const PointsD landmarks = random_points(10, 6);
   const auto [energies, warps] = ThinPlateSpline::principal_warps(landmarks);

@@ -8,12 +8,12 @@
 #include <string>
 
 #include "mien/core/error.h"
-#include "mien/core/parallel.h"
 #include "mien/geometry/laplacian.h"
 #include "mien/geometry/openness.h"
 #include "mien/geometry/thin_plate_spline.h"
 #include "mien/transfer/detail/face_size.h"
 #include "mien/transfer/detail/feature_curves.h"
+#include "mien/transfer/detail/landmark_influence.h"
 #include "mien/transfer/detail/matching.h"
 #include "mien/transfer/detail/polynomial_fit.h"
 
@@ -73,27 +73,6 @@ constexpr std::size_t stiff_stages = 8;
 /// Distances from the nearest landmark between which near becomes far, in face sizes. While the surface is stiff, what
 /// faces another way than the landmark is further from it: the chin's underside is not held by the chin's tip.
 constexpr double near_landmarks = .08, far_from_landmarks = .3, turned_away = .08;
-/// A landmark is clicked as well as this, in face sizes; one that is a vertex may belong this share of an edge away.
-constexpr double landmark_error = .005, share_of_edge = .15;
-
-std::vector<SurfaceQuery::Hit> closest_points(const Surface& surface, const PointsD& points) {
-  const SurfaceQuery query(surface.positions, surface.triangles);
-  std::vector<SurfaceQuery::Hit> hits;
-  for (Eigen::Index i = 0; i < points.rows(); ++i) hits.push_back(query.closest(points.row(i).transpose()));
-  return hits;
-}
-
-/// #L x 3, unit length.
-PointsD normals_at(const std::vector<SurfaceQuery::Hit>& at, const detail::MatchSurface& surface) {
-  PointsD normals = PointsD::Zero(static_cast<Eigen::Index>(at.size()), 3);
-  for (Eigen::Index i = 0; i < normals.rows(); ++i) {
-    const SurfaceQuery::Hit& hit = at[static_cast<std::size_t>(i)];
-    for (int k = 0; k < 3; ++k)
-      normals.row(i) += hit.barycentric[k] * surface.normals.row(surface.triangles(hit.triangle, k));
-  }
-  normals.rowwise().normalize();
-  return normals;
-}
 
 Eigen::VectorXd normalised_areas(const Surface& surface) {
   const Eigen::VectorXd areas = vertex_areas(surface.positions, surface.triangles);
@@ -117,61 +96,6 @@ void add_landmark_wishes(const std::vector<SurfaceQuery::Hit>& at, const Triangl
   }
 }
 
-/// Places that face somewhere, #V x 6: turned away by a radian is as far as `turn`.
-Eigen::MatrixXd facing(const PointsD& positions, const PointsD& normals, double turn) {
-  Eigen::MatrixXd places(positions.rows(), 6);
-  places << positions, turn * normals;
-  return places;
-}
-
-/// #V: 0 within `near` of a landmark, 1 from `far` on, smooth between; 1 where there are none.
-Eigen::VectorXd far_from(const Eigen::MatrixXd& landmarks, const Eigen::MatrixXd& places, double near,
-                         double far) {
-  Eigen::VectorXd result = Eigen::VectorXd::Ones(places.rows());
-  if (landmarks.rows() == 0) return result;
-  parallel_for(static_cast<std::size_t>(places.rows()), 256, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t v = begin; v < end; ++v) {
-      const Eigen::Index row = static_cast<Eigen::Index>(v);
-      const double distance =
-          std::sqrt((landmarks.rowwise() - places.row(row)).rowwise().squaredNorm().minCoeff());
-      const double t = std::clamp((distance - near) / (far - near), 0.0, 1.0);
-      result[row] = t * t * (3 - 2 * t);
-    }
-  });
-  return result;
-}
-
-/// #V: the mean length of each vertex's edges.
-Eigen::VectorXd edge_lengths(const Surface& surface) {
-  Eigen::VectorXd sum = Eigen::VectorXd::Zero(surface.positions.rows()), count = sum;
-  for (Eigen::Index t = 0; t < surface.triangles.rows(); ++t)
-    for (int k = 0; k < 3; ++k) {
-      const int a = surface.triangles(t, k), b = surface.triangles(t, (k + 1) % 3);
-      const double length = (surface.positions.row(a) - surface.positions.row(b)).norm();
-      for (const int v : {a, b}) {
-        sum[v] += length;
-        count[v] += 1;
-      }
-    }
-  return sum.cwiseQuotient(count.cwiseMax(1));
-}
-
-/// #L: how much further off than a well-clicked landmark of a fine mesh each of these may be, squared: one that sits on a
-/// vertex had no better vertex near.
-Eigen::VectorXd landmark_spread(const std::vector<SurfaceQuery::Hit>& at, const Surface& surface,
-                                double unit) {
-  constexpr double on_vertex = .999;
-  const Eigen::VectorXd edges = edge_lengths(surface);
-  Eigen::VectorXd spread = Eigen::VectorXd::Ones(static_cast<Eigen::Index>(at.size()));
-  for (std::size_t i = 0; i < at.size(); ++i) {
-    int corner = 0;
-    if (at[i].barycentric.maxCoeff(&corner) < on_vertex) continue;
-    const double error = share_of_edge * edges[surface.triangles(at[i].triangle, corner)] / unit;
-    spread[static_cast<Eigen::Index>(i)] += error * error / (landmark_error * landmark_error);
-  }
-  return spread;
-}
-
 Eigen::VectorXd trust_of(const RegistrationOptions& options, Eigen::Index count) {
   if (options.landmark_trust.size() == 0) return Eigen::VectorXd::Ones(count);
   if (options.landmark_trust.size() != count)
@@ -191,10 +115,10 @@ struct Fitting {
   const std::vector<SurfaceQuery::Hit>& landmarks;
   const Registration& result;
   const RegistrationOptions& options;
-  std::vector<detail::CurvePiece> source_curves, target_curves;
-  Eigen::VectorXd masses;
-  std::vector<char> boundary;
-  mutable detail::MatchMemory memory;  // makes matching faster, changes nothing
+  std::vector<detail::CurvePiece> source_curves = {}, target_curves = {};
+  Eigen::VectorXd masses = {};
+  std::vector<char> boundary = {};
+  mutable detail::MatchMemory memory = {};  // makes matching faster, changes nothing
 
   void find_features() {
     masses = normalised_areas(source);
@@ -214,8 +138,8 @@ struct Fitting {
                                    int most_vertices = coarse_vertices) const {
     detail::MatchSurface moving(positions, source.triangles, result.source_openness, masses, boundary,
                                 SurfaceQuery::Build::fast);
-    moving.far =
-        far_from(holding, facing(positions, moving.normals, turned_away), near_landmarks, far_from_landmarks);
+    moving.far = detail::far_from(holding, detail::facing(positions, moving.normals, turned_away),
+                                  near_landmarks, far_from_landmarks);
     const bool coarse = stage.stiffness >= curves_until;
     detail::MatchOptions match;
     match.least_reach = stage.reach;
@@ -261,10 +185,35 @@ struct Fitting {
     for (int round = 0; round < rounds; ++round) {
       const PointsD shift = detail::fit_polynomial(
           positions, wishes(positions, whole, stiff_likeness(), whole_vertices), ridge);
-      positions += far_from(holding.leftCols<3>(), positions, near, distant).asDiagonal() * shift;
+      positions += detail::far_from(holding.leftCols<3>(), positions, near, distant).asDiagonal() * shift;
     }
   }
 };
+
+/// The displacement from `start` after stages `first` to `end`.
+PointsD go_through(const Fitting& fitting, const detail::DisplacementSolver& solver, const PointsD& start,
+                   PointsD u, std::size_t first, std::size_t end, const Likeness& likeness) {
+  for (std::size_t s = first; s < end; ++s) {
+    report_progress(fitting.options.progress, "registering", static_cast<double>(s) / schedule.size());
+    const PointsD pulled =
+        solver.solve(schedule[s].stiffness, fitting.wishes(start + u, schedule[s], likeness), u);
+    u = s + 1 < end ? PointsD(pulled + further * (pulled - u)) : pulled;
+  }
+  return u;
+}
+
+/// The source's vertices on the target, from where the spline brings them.
+PointsD bring_onto_target(const Fitting& fitting, const PointsD& start) {
+  const detail::DisplacementSolver solver(start, fitting.source.triangles);
+  constexpr std::size_t end = schedule.size();
+  const PointsD stiff = go_through(fitting, solver, start, PointsD::Zero(start.rows(), 3), 0, stiff_stages,
+                                   fitting.stiff_likeness());
+  const PointsD soft = start + go_through(fitting, solver, start, stiff, stiff_stages, end, while_soft);
+  const double folds = fitting.folded(soft);
+  if (folds <= most_folds) return soft;
+  const PointsD plain = start + go_through(fitting, solver, start, stiff, stiff_stages, end - 1, by_place);
+  return fitting.folded(plain) < folds ? plain : soft;
+}
 
 }  // namespace
 
@@ -277,52 +226,28 @@ Registration register_surfaces(const Surface& source, const Surface& target, con
   const Eigen::RowVector3d centre = target_landmarks.colwise().mean();
   const auto normalise = [&](const PointsD& p) { return PointsD((p.rowwise() - centre) / result.unit); };
   const PointsD fixed_points = normalise(target.positions), goals = normalise(target_landmarks);
-  const std::vector<SurfaceQuery::Hit> landmarks = closest_points(source, source_landmarks);
+  const std::vector<SurfaceQuery::Hit> landmarks = detail::closest_points(source, source_landmarks);
 
   result.source_openness = openness(source.positions, source.triangles, openness_rays);
   result.target_openness = openness(target.positions, target.triangles, openness_rays);
   detail::MatchSurface fixed(
       fixed_points, target.triangles, result.target_openness, normalised_areas(target),
       boundary_vertices(static_cast<std::size_t>(fixed_points.rows()), target.triangles));
-  const std::vector<SurfaceQuery::Hit> marked = closest_points(target, target_landmarks);
+  const std::vector<SurfaceQuery::Hit> marked = detail::closest_points(target, target_landmarks);
   Eigen::MatrixXd holding(0, 6);
-  if (options.landmarks_hold) holding = facing(goals, normals_at(marked, fixed), turned_away);
-  fixed.far =
-      far_from(holding, facing(fixed_points, fixed.normals, turned_away), near_landmarks, far_from_landmarks);
+  if (options.landmarks_hold)
+    holding = detail::facing(goals, detail::normals_at(marked, target.triangles, fixed.normals), turned_away);
+  fixed.far = detail::far_from(holding, detail::facing(fixed_points, fixed.normals, turned_away),
+                               near_landmarks, far_from_landmarks);
 
-  const Eigen::VectorXd spread = landmark_spread(marked, target, result.unit);
+  const Eigen::VectorXd spread = detail::landmark_spread(marked, target, result.unit);
   const Eigen::VectorXd share = trust_of(options, goals.rows()).cwiseQuotient(spread);
-  Fitting fitting{source,    {fixed_points, target.triangles},
-                  fixed,     goals,
-                  holding,   share,
-                  landmarks, result,
-                  options,   {},
-                  {},        {},
-                  {}};
+  Fitting fitting{source, {fixed_points, target.triangles}, fixed, goals, holding, share, landmarks, result,
+                  options};
   fitting.find_features();
-  const ThinPlateSpline spline(source_landmarks, goals, {options.smoothing, -1, spread});
-  PointsD start = spline(source.positions);
+  PointsD start = ThinPlateSpline(source_landmarks, goals, {options.smoothing, -1, spread})(source.positions);
   fitting.fit_whole(start);
-  const detail::DisplacementSolver solver(start, source.triangles);
-  std::size_t done = 0;
-  const auto run = [&](PointsD u, std::size_t end, const Likeness& likeness) {
-    for (std::size_t s = done; s < end; ++s) {
-      report_progress(options.progress, "registering", static_cast<double>(s) / schedule.size());
-      const PointsD pulled =
-          solver.solve(schedule[s].stiffness, fitting.wishes(start + u, schedule[s], likeness), u);
-      u = s + 1 < end ? PointsD(pulled + further * (pulled - u)) : pulled;
-    }
-    return u;
-  };
-  const PointsD stiff = run(PointsD::Zero(start.rows(), 3), stiff_stages, fitting.stiff_likeness());
-  done = stiff_stages;
-  PointsD u = run(stiff, schedule.size(), while_soft);
-  const double folds = fitting.folded(start + u);
-  if (folds > most_folds) {
-    const PointsD plain = run(stiff, schedule.size() - 1, by_place);
-    if (fitting.folded(start + plain) < folds) u = plain;
-  }
-  result.guide = ((start + u) * result.unit).rowwise() + centre;
+  result.guide = (bring_onto_target(fitting, start) * result.unit).rowwise() + centre;
   return result;
 }
 

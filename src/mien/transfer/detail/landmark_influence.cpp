@@ -1,0 +1,85 @@
+#include "mien/transfer/detail/landmark_influence.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "mien/core/parallel.h"
+
+namespace mien::detail {
+namespace {
+
+/// In face sizes; a share of an edge.
+constexpr double clicking_error = .005, share_of_edge = .15;
+
+/// #V: the mean length of each vertex's edges.
+Eigen::VectorXd edge_lengths(const Surface& surface) {
+  Eigen::VectorXd sum = Eigen::VectorXd::Zero(surface.positions.rows()), count = sum;
+  for (Eigen::Index t = 0; t < surface.triangles.rows(); ++t)
+    for (int k = 0; k < 3; ++k) {
+      const int a = surface.triangles(t, k), b = surface.triangles(t, (k + 1) % 3);
+      const double length = (surface.positions.row(a) - surface.positions.row(b)).norm();
+      for (const int v : {a, b}) {
+        sum[v] += length;
+        count[v] += 1;
+      }
+    }
+  return sum.cwiseQuotient(count.cwiseMax(1));
+}
+
+}  // namespace
+
+std::vector<SurfaceQuery::Hit> closest_points(const Surface& surface, const PointsD& points) {
+  const SurfaceQuery query(surface.positions, surface.triangles);
+  std::vector<SurfaceQuery::Hit> hits;
+  for (Eigen::Index i = 0; i < points.rows(); ++i) hits.push_back(query.closest(points.row(i).transpose()));
+  return hits;
+}
+
+PointsD normals_at(const std::vector<SurfaceQuery::Hit>& at, const Triangles& triangles,
+                   const PointsD& normals) {
+  PointsD result = PointsD::Zero(static_cast<Eigen::Index>(at.size()), 3);
+  for (Eigen::Index i = 0; i < result.rows(); ++i) {
+    const SurfaceQuery::Hit& hit = at[static_cast<std::size_t>(i)];
+    for (int k = 0; k < 3; ++k) result.row(i) += hit.barycentric[k] * normals.row(triangles(hit.triangle, k));
+  }
+  result.rowwise().normalize();
+  return result;
+}
+
+Eigen::MatrixXd facing(const PointsD& positions, const PointsD& normals, double turn) {
+  Eigen::MatrixXd places(positions.rows(), 6);
+  places << positions, turn * normals;
+  return places;
+}
+
+Eigen::VectorXd far_from(const Eigen::MatrixXd& landmarks, const Eigen::MatrixXd& places, double near,
+                         double far) {
+  Eigen::VectorXd result = Eigen::VectorXd::Ones(places.rows());
+  if (landmarks.rows() == 0) return result;
+  parallel_for(static_cast<std::size_t>(places.rows()), 256, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t v = begin; v < end; ++v) {
+      const Eigen::Index row = static_cast<Eigen::Index>(v);
+      const double distance =
+          std::sqrt((landmarks.rowwise() - places.row(row)).rowwise().squaredNorm().minCoeff());
+      const double t = std::clamp((distance - near) / (far - near), 0.0, 1.0);
+      result[row] = t * t * (3 - 2 * t);
+    }
+  });
+  return result;
+}
+
+Eigen::VectorXd landmark_spread(const std::vector<SurfaceQuery::Hit>& at, const Surface& surface,
+                                double unit) {
+  constexpr double on_vertex = .999;
+  const Eigen::VectorXd edges = edge_lengths(surface);
+  Eigen::VectorXd spread = Eigen::VectorXd::Ones(static_cast<Eigen::Index>(at.size()));
+  for (std::size_t i = 0; i < at.size(); ++i) {
+    int corner = 0;
+    if (at[i].barycentric.maxCoeff(&corner) < on_vertex) continue;
+    const double error = share_of_edge * edges[surface.triangles(at[i].triangle, corner)] / unit;
+    spread[static_cast<Eigen::Index>(i)] += error * error / (clicking_error * clicking_error);
+  }
+  return spread;
+}
+
+}  // namespace mien::detail
