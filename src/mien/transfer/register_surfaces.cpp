@@ -55,24 +55,37 @@ constexpr std::array<Stage, 12> schedule{{{3, 2, .18, .1},
                                           {5e-4, .02, .12, .024},
                                           {1e-4, .02, .12, .019},
                                           {1e-5, .02, .12, .013}}};
-/// Each stage but the last goes on by this share of what it moved: closest points hold what should slide.
-constexpr double further = 0.5;
-
 /// What normals count as in a match (detail/matching.h), in face sizes. Far from all landmarks they hold the surface from
-/// the start; near them the landmarks do, and normals only tell the sides of a lid from its rim, once it lies there. Where no landmark
-/// holds they say less.
+/// the start; near them the landmarks do, and normals only tell the sides of a lid from its rim, once it lies there.
 struct Likeness {
   double near, far, bend;
 };
-constexpr Likeness while_stiff{0, .3, 0}, nothing_holds{0, .2, 0}, while_soft{.015, .03, .03};
+constexpr Likeness while_soft{.015, .03, .03};
 /// Where proportions differ so much that normals make the skin fold (more than this share of its triangles), the soft
 /// stages go by place alone and the last, softest one is left out.
 constexpr Likeness by_place{0, 0, 0};
 constexpr double most_folds = 2e-3;
 constexpr std::size_t stiff_stages = 8;
-/// Distances from the nearest landmark between which near becomes far, in face sizes. While the surface is stiff, what
-/// faces another way than the landmark is further from it: the chin's underside is not held by the chin's tip.
-constexpr double near_landmarks = .08, far_from_landmarks = .3, turned_away = .08;
+/// Distances from the nearest landmark between which near becomes far, in face sizes.
+constexpr double near_landmarks = .08, far_from_landmarks = .3;
+
+/// How boldly the surface slides to where it looks alike.
+struct Manner {
+  Likeness while_stiff;
+  /// What faces another way than a landmark is this further from it, in face sizes a radian: the chin's tip does not hold
+  /// the chin's underside.
+  double turned_away;
+  /// Each stage but the last goes on by this share of what it moved: closest points hold what should slide.
+  double further;
+};
+constexpr Manner by_landmarks{{0, .3, 0}, .08, .5};
+/// Landmarks that are not trusted leave the start as the best guess of where places go.
+constexpr Manner by_itself{{0, .2, 0}, 0, 0};
+constexpr double least_trust = 0.5;
+
+const Manner& manner_of(const RegistrationOptions& options, const Eigen::VectorXd& trust) {
+  return options.landmarks_hold && trust.mean() >= least_trust ? by_landmarks : by_itself;
+}
 
 Eigen::VectorXd normalised_areas(const Surface& surface) {
   const Eigen::VectorXd areas = vertex_areas(surface.positions, surface.triangles);
@@ -115,6 +128,7 @@ struct Fitting {
   const std::vector<SurfaceQuery::Hit>& landmarks;
   const Registration& result;
   const RegistrationOptions& options;
+  const Manner& manner;
   std::vector<detail::CurvePiece> source_curves = {}, target_curves = {};
   Eigen::VectorXd masses = {};
   std::vector<char> boundary = {};
@@ -129,16 +143,12 @@ struct Fitting {
     target_curves = detail::feature_curves(fixed_surface, result.target_openness, least_border);
   }
 
-  const Likeness& stiff_likeness() const {
-    return options.landmarks_hold && landmark_share.maxCoeff() > 0 ? while_stiff : nothing_holds;
-  }
-
   /// All that pulls at the source when it lies at `positions`; while it is stiff at most `most_vertices` of either side ask.
   std::vector<detail::Wish> wishes(const PointsD& positions, const Stage& stage, const Likeness& likeness,
                                    int most_vertices = coarse_vertices) const {
     detail::MatchSurface moving(positions, source.triangles, result.source_openness, masses, boundary,
                                 SurfaceQuery::Build::fast);
-    moving.far = detail::far_from(holding, detail::facing(positions, moving.normals, turned_away),
+    moving.far = detail::far_from(holding, detail::facing(positions, moving.normals, manner.turned_away),
                                   near_landmarks, far_from_landmarks);
     const bool coarse = stage.stiffness >= curves_until;
     detail::MatchOptions match;
@@ -184,7 +194,7 @@ struct Fitting {
     constexpr Stage whole{schedule[0].stiffness, 1, 0.1, 0.3};
     for (int round = 0; round < rounds; ++round) {
       const PointsD shift = detail::fit_polynomial(
-          positions, wishes(positions, whole, stiff_likeness(), whole_vertices), ridge);
+          positions, wishes(positions, whole, manner.while_stiff, whole_vertices), ridge);
       positions += detail::far_from(holding.leftCols<3>(), positions, near, distant).asDiagonal() * shift;
     }
   }
@@ -197,7 +207,7 @@ PointsD go_through(const Fitting& fitting, const detail::DisplacementSolver& sol
     report_progress(fitting.options.progress, "registering", static_cast<double>(s) / schedule.size());
     const PointsD pulled =
         solver.solve(schedule[s].stiffness, fitting.wishes(start + u, schedule[s], likeness), u);
-    u = s + 1 < end ? PointsD(pulled + further * (pulled - u)) : pulled;
+    u = s + 1 < end ? PointsD(pulled + fitting.manner.further * (pulled - u)) : pulled;
   }
   return u;
 }
@@ -207,7 +217,7 @@ PointsD bring_onto_target(const Fitting& fitting, const PointsD& start) {
   const detail::DisplacementSolver solver(start, fitting.source.triangles);
   constexpr std::size_t end = schedule.size();
   const PointsD stiff = go_through(fitting, solver, start, PointsD::Zero(start.rows(), 3), 0, stiff_stages,
-                                   fitting.stiff_likeness());
+                                   fitting.manner.while_stiff);
   const PointsD soft = start + go_through(fitting, solver, start, stiff, stiff_stages, end, while_soft);
   const double folds = fitting.folded(soft);
   if (folds <= most_folds) return soft;
@@ -234,16 +244,20 @@ Registration register_surfaces(const Surface& source, const Surface& target, con
       fixed_points, target.triangles, result.target_openness, normalised_areas(target),
       boundary_vertices(static_cast<std::size_t>(fixed_points.rows()), target.triangles));
   const std::vector<SurfaceQuery::Hit> marked = detail::closest_points(target, target_landmarks);
+  const Eigen::VectorXd trust = trust_of(options, goals.rows());
+  const Manner& manner = manner_of(options, trust);
   Eigen::MatrixXd holding(0, 6);
   if (options.landmarks_hold)
-    holding = detail::facing(goals, detail::normals_at(marked, target.triangles, fixed.normals), turned_away);
-  fixed.far = detail::far_from(holding, detail::facing(fixed_points, fixed.normals, turned_away),
+    holding = detail::facing(goals, detail::normals_at(marked, target.triangles, fixed.normals),
+                             manner.turned_away);
+  fixed.far = detail::far_from(holding, detail::facing(fixed_points, fixed.normals, manner.turned_away),
                                near_landmarks, far_from_landmarks);
 
   const Eigen::VectorXd spread = detail::landmark_spread(marked, target, result.unit);
-  const Eigen::VectorXd share = trust_of(options, goals.rows()).cwiseQuotient(spread);
-  Fitting fitting{source, {fixed_points, target.triangles}, fixed, goals, holding, share, landmarks, result,
-                  options};
+  const Eigen::VectorXd share = trust.cwiseQuotient(spread);
+  Fitting fitting{
+      source, {fixed_points, target.triangles}, fixed, goals, holding, share, landmarks, result, options,
+      manner};
   fitting.find_features();
   PointsD start = ThinPlateSpline(source_landmarks, goals, {options.smoothing, -1, spread})(source.positions);
   fitting.fit_whole(start);
