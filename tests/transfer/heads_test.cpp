@@ -93,6 +93,23 @@ TEST(human_onto_itself, eyes_teeth_and_tongue_get_their_own_motion_back) {
   EXPECT_LT(off[26], 1e-3);
 }
 
+TEST(human_onto_a_wide_human, lashes_and_tongue_keep_their_joints) {
+  const Character& human = made("human");
+  Character wide = human;
+  wide.shapes.clear();
+  for (Part& part : wide.parts) part.mesh.positions *= Eigen::Vector3f(1.12F, 1, 0.95F).asDiagonal();
+  Points& tongue = wide.parts[find_part(wide, "tongue")].mesh.positions;
+  const Eigen::RowVector3f middle = tongue.colwise().mean();
+  const Eigen::Matrix3f pitch(Eigen::AngleAxisf(0.15F, Eigen::Vector3f::UnitX()));
+  tongue = ((tongue.rowwise() - middle) * pitch.transpose()).rowwise() + middle;
+  const Character rigged = transfer(human, wide).character;
+  for (const std::string name : {"lashes", "tongue"}) {
+    const int part = find_part(human, name);
+    const Eigen::MatrixXd off = dense_weights(rigged.parts[part], 28) - dense_weights(human.parts[part], 28);
+    EXPECT_LT(off.rowwise().lpNorm<1>().mean(), 0.1) << name;
+  }
+}
+
 /// What holds for every target.
 void expect_sound(const Character& source, const Character& target, const TransferResult& result) {
   const Character& character = result.character;

@@ -8,14 +8,16 @@
 
 #include "mien/geometry/similarity.h"
 #include "mien/transfer/carry_skin_weights.h"
+#include "mien/transfer/detail/piece_kinds.h"
 #include "mien/transfer/detail/pool.h"
 
 namespace mien::detail {
 
-enum class PieceKind { skin, eye, teeth, tongue, lash, other };
-
-/// Reads the kind from a name ("l-eye", "upper-teeth", "Head: Lashes"); `other` when it says nothing.
-PieceKind kind_from_name(const std::string& name);
+/// Per vertex of a piece a place on some triangles.
+struct PiecePlaces {
+  std::vector<int> triangle;
+  std::vector<Eigen::Vector3d> barycentric;
+};
 
 /// How one target piece gets its motion.
 struct PiecePlan {
@@ -29,9 +31,9 @@ struct PiecePlan {
   PieceKind kind = PieceKind::other;
   Way way = Way::still;
   std::vector<int> vertices;  ///< pooled target vertices
-  /// donors: per vertex a triangle of the source pool; attached and jaw: a triangle of the target skin's surface
-  std::vector<int> triangle;
-  std::vector<Eigen::Vector3d> barycentric;
+  PiecePlaces places;         ///< donors: in the source pool; attached and jaw: on the target skin's surface
+  /// attached: where the source's own lashes tell which joints move a lash, in the source pool; empty: the skin beneath does
+  PiecePlaces weight_donors;
   std::vector<double> fade;  ///< attached: 1 on the skin, falling with distance
   bool same_kind = false;    ///< donors: they are what the piece is (a tongue for a tongue), by name or form
   std::vector<int> donor_vertices;  ///< donors: pooled source vertices whose motion is looked at as a whole
@@ -44,6 +46,9 @@ struct PieceMotion {
       signature;    ///< mean displacement a shape (3 #S), then mean skin weight a joint times the face's size
   double bend = 0;  ///< what of its motion is not rigid: root of squares over root of squares of the motion
 };
+
+/// A piece that bends less moves as a rigid body.
+constexpr double rigid_bend = 0.12;
 
 /// Of the pieces that are not skin; skin counts as bending.
 ///   deltas(s)  pooled source vertices x 3 of shape s; weights: pooled source vertices x #J, or empty
@@ -62,6 +67,9 @@ struct PieceInput {
   const std::vector<PieceMotion>& source_motion;  ///< per source piece
   double unit = 1;
 };
+
+/// The head's principal axes, as columns: boxes along them turn with it.
+Eigen::Matrix3d head_axes(const PieceInput& input);
 
 /// One plan a target piece that is not skin, in piece order.
 std::vector<PiecePlan> plan_pieces(const PieceInput& input);
@@ -91,7 +99,6 @@ WeightMatrix carry_piece_weights(const PieceInput& input, const PiecePlan& plan,
 WeightMatrix carry_piece_rows(const PieceInput& input, const PiecePlan& plan, const WeightMatrix& source_rows,
                               const WeightMatrix& skin_rows);
 
-std::string_view name_of(PieceKind kind);
 std::string_view name_of(PiecePlan::Way way);
 
 }  // namespace mien::detail

@@ -75,6 +75,13 @@ Pool pool(const Character& character) {
   return result;
 }
 
+std::vector<int> vertices_of(const Pool& pool, int piece) {
+  std::vector<int> result;
+  for (std::size_t v = 0; v < pool.piece.size(); ++v)
+    if (pool.piece[v] == piece) result.push_back(static_cast<int>(v));
+  return result;
+}
+
 PoolSurface select_pieces(const Pool& pool, const std::vector<char>& pieces) {
   PoolSurface result;
   result.row_of.assign(pool.piece.size(), -1);

@@ -30,6 +30,9 @@ struct Pool {
 
 Pool pool(const Character& character);
 
+/// The pooled vertices of one piece.
+std::vector<int> vertices_of(const Pool& pool, int piece);
+
 /// A choice of pieces as a surface of its own; row r is pooled vertex `vertices[r]`.
 struct PoolSurface {
   Surface surface;

@@ -1,0 +1,168 @@
+#include "mien/transfer/detail/piece_donors.h"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include "mien/core/error.h"
+#include "mien/geometry/similarity.h"
+#include "mien/transfer/detail/at.h"
+
+namespace mien::detail {
+namespace {
+
+/// Source pieces that may give to a target piece: lashes to lashes alone, nothing else that is worn on the skin, skin only to
+/// what has no kind, of the same kind and row when both sides say what they are.
+std::vector<char> donor_pieces(const PieceInput& in, PieceKind kind, const std::string& name,
+                               const std::vector<PieceKind>& source_kinds) {
+  std::vector<char> same(source_kinds.size(), 0), any(source_kinds.size(), 0);
+  bool found_same = false;
+  for (std::size_t p = 0; p < source_kinds.size(); ++p) {
+    if (source_kinds[p] == PieceKind::lash) {
+      same[p] = is_lash(name) && is_lash(in.source.piece_name[p]);
+      found_same = found_same || same[p];
+      continue;
+    }
+    if (in.source_skin[p]) {
+      // A loose mouth bag is part of many a source's skin.
+      any[p] = kind == PieceKind::other;
+      continue;
+    }
+    const int row = row_from_name(name), source_row = row_from_name(in.source.piece_name[p]);
+    if (row * source_row < 0) continue;
+    const bool eye = kind == PieceKind::eye, source_eye = source_kinds[p] == PieceKind::eye;
+    any[p] = eye == source_eye || kind == PieceKind::other;
+    same[p] = kind != PieceKind::other && source_kinds[p] == kind;
+    found_same = found_same || same[p];
+  }
+  return found_same ? same : any;
+}
+
+/// Rigid pieces that make the same motion (the teeth of one jaw) count as one; what bends stands alone.
+bool moves_alike(const PieceInput& in, int a, int b) {
+  const PieceMotion &ma = in.source_motion[at(a)], &mb = in.source_motion[at(b)];
+  if (a == b) return true;
+  if (ma.bend > rigid_bend || mb.bend > rigid_bend) return false;
+  const double size = std::max(ma.signature.norm(), mb.signature.norm());
+  return (ma.signature - mb.signature).norm() <= 0.3 * size + 1e-3 * in.unit / in.similarity.scale;
+}
+
+/// Of the pieces with votes the group that the piece should move with: the one its name asks for (lower teeth move more
+/// than upper), else the one with most votes.
+std::vector<char> choose_group(const PieceInput& in, const std::map<int, int>& votes, const PiecePlan& plan,
+                               int row) {
+  int best = -1;
+  double best_score = -std::numeric_limits<double>::infinity();
+  for (const auto& [leader, own] : votes) {
+    int count = 0;
+    for (const auto& [other, more] : votes) count += moves_alike(in, leader, other) ? more : 0;
+    const bool counts = count >= 0.1 * static_cast<double>(plan.vertices.size()) &&
+                        in.source_motion[at(leader)].bend <= rigid_bend;
+    const double motion = in.source_motion[at(leader)].signature.norm();
+    double score = count;
+    if (plan.kind == PieceKind::teeth && row != 0)
+      score = counts ? (row < 0 ? motion : -motion) : score - 1e9;
+    if (score <= best_score) continue;
+    best_score = score;
+    best = leader;
+  }
+  std::vector<char> group(in.source_skin.size(), 0);
+  for (const auto& [other, more] : votes) group[at(other)] = moves_alike(in, best, other);
+  return group;
+}
+
+/// The points moved so that their box, along the head's own axes, is the others'.
+PointsD box_onto_box(const PieceInput& in, const PointsD& points, const PointsD& others) {
+  const Eigen::Matrix3d axes = head_axes(in);
+  const PointsD a = points * axes, b = others * axes;
+  const Eigen::RowVector3d low = a.colwise().minCoeff(), size = a.colwise().maxCoeff() - low;
+  const Eigen::RowVector3d to = b.colwise().minCoeff(), to_size = b.colwise().maxCoeff() - to;
+  PointsD moved = a.rowwise() - low;
+  for (int axis = 0; axis < 3; ++axis)
+    if (size[axis] > 0) moved.col(axis) *= to_size[axis] / size[axis];
+  return (moved.rowwise() + to) * axes.transpose();
+}
+
+/// Turned and scaled, round after round, to where the closest points are.
+///   throws  what fit_similarity does: points on one line
+PointsD settle(const SurfaceQuery& query, PointsD points) {
+  constexpr int rounds = 15;
+  for (int round = 0; round < rounds; ++round) {
+    PointsD onto(points.rows(), 3);
+    for (Eigen::Index i = 0; i < points.rows(); ++i)
+      onto.row(i) = query.closest(points.row(i).transpose()).position.transpose();
+    points = fit_similarity(points, onto)(points);
+  }
+  return points;
+}
+
+/// The piece's vertices where they lie on its donors. The warp of the head follows the skin: what bends by itself may lie
+/// elsewhere in the head, be longer and point another way.
+PointsD lay_on_donors(const PieceInput& in, const SurfaceQuery& donors, const PointsD& positions,
+                      const PiecePlan& plan) {
+  if (!plan.same_kind || (plan.kind != PieceKind::tongue && plan.kind != PieceKind::lash)) return positions;
+  const PointsD boxed = box_onto_box(in, positions, in.warped_source(plan.donor_vertices, Eigen::all));
+  if (plan.kind != PieceKind::tongue) return boxed;
+  try {
+    return settle(donors, boxed);
+  } catch (const Error&) {
+    return boxed;  // a sliver, which has no way to turn
+  }
+}
+
+}  // namespace
+
+const DonorFinder::Donors& DonorFinder::of(const std::vector<char>& pieces) {
+  Donors& donors = known_[pieces];
+  if (!donors.query) {
+    donors.pieces = select_pieces(in_.source, pieces);
+    if (donors.pieces.surface.triangles.rows() > 0)
+      donors.query = std::make_unique<SurfaceQuery>(
+          PointsD(in_.warped_source(donors.pieces.vertices, Eigen::all)), donors.pieces.surface.triangles);
+  }
+  return donors;
+}
+
+/// The places on the donor pieces closest to the piece's vertices (where they lie: `positions`); the number of them on
+/// each donor.
+std::map<int, int> DonorFinder::closest_on(const Donors& donors, const PointsD& positions, PiecePlan& plan,
+                                           double& median_distance) const {
+  std::map<int, int> votes;
+  plan.places.triangle.clear();
+  plan.places.barycentric.clear();
+  median_distance = std::numeric_limits<double>::infinity();
+  if (!donors.query) return votes;
+  std::vector<double> distance;
+  for (Eigen::Index i = 0; i < positions.rows(); ++i) {
+    const auto hit = donors.query->closest(positions.row(i).transpose());
+    distance.push_back(hit.distance);
+    plan.places.triangle.push_back(donors.pieces.triangles[at(hit.triangle)]);
+    plan.places.barycentric.push_back(hit.barycentric);
+    ++votes[in_.source.piece[at(in_.source.triangles(plan.places.triangle.back(), 0))]];
+  }
+  std::nth_element(distance.begin(), distance.begin() + static_cast<long>(distance.size() / 2),
+                   distance.end());
+  median_distance = distance[distance.size() / 2];
+  return votes;
+}
+
+bool DonorFinder::find(PiecePlan& plan) {
+  const std::string& name = in_.target.piece_name[at(plan.piece)];
+  const PointsD positions = in_.target.positions(plan.vertices, Eigen::all);
+  double distance = 0;
+  const auto votes = closest_on(of(donor_pieces(in_, plan.kind, name, kinds_)), positions, plan, distance);
+  if (votes.empty() || distance > 0.15 * in_.unit) return false;
+  const auto group = choose_group(in_, votes, plan, row_from_name(name));
+  plan.same_kind = plan.kind != PieceKind::other;
+  for (std::size_t p = 0; p < group.size(); ++p) {
+    if (!group[p]) continue;
+    plan.same_kind = plan.same_kind && kinds_[p] == plan.kind;
+    const auto members = vertices_of(in_.source, static_cast<int>(p));
+    plan.donor_vertices.insert(plan.donor_vertices.end(), members.begin(), members.end());
+  }
+  const Donors& donors = of(group);
+  closest_on(donors, lay_on_donors(in_, *donors.query, positions, plan), plan, distance);
+  return true;
+}
+
+}  // namespace mien::detail
