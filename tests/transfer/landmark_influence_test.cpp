@@ -6,6 +6,8 @@
 #include <cmath>
 #include <vector>
 
+#include "mien/transfer/detail/matching.h"
+
 namespace mien::detail {
 namespace {
 
@@ -26,7 +28,8 @@ TEST(landmark_influence, a_vertex_may_belong_a_seventh_of_an_edge_away) {
   PointsD points(3, 3);
   points << 3, 0, 0, 0, 0, 0, 1.5, 1, 0;  // a corner of one triangle, of both, none
   const double unit = 100;
-  const Eigen::VectorXd spread = landmark_spread(closest_points(surface, points), surface, unit);
+  const Eigen::VectorXd spread = landmark_spread(
+      closest_points(SurfaceQuery(surface.positions, surface.triangles), points), surface, unit);
   const auto expected = [&](double edge) { return 1 + std::pow(.15 * edge / (.005 * unit), 2); };
   EXPECT_NEAR(spread[0], expected((3 + 4) / 2.0), 1e-12);
   EXPECT_NEAR(spread[1], expected((3 + 5 + 5 + 4) / 4.0), 1e-12) << "an edge counts once a triangle";
@@ -45,8 +48,10 @@ TEST(landmark_influence, reaches_from_near_to_far) {
 TEST(landmark_influence, what_is_turned_away_is_further) {
   const Surface surface = rectangle();
   const PointsD up = Eigen::RowVector3d(0, 0, 1).replicate(4, 1);
-  const auto at = closest_points(surface, surface.positions.topRows(1));
-  const PointsD normal = normals_at(at, surface.triangles, 2 * up);
+  const Eigen::VectorXd ones = Eigen::VectorXd::Ones(4);
+  const MatchSurface matched(surface.positions, surface.triangles, ones, ones, std::vector<char>(4, 0));
+  const auto at = closest_points(matched.query, surface.positions.topRows(1));
+  const PointsD normal = matched.normal_at(at[0]).transpose();
   EXPECT_TRUE(normal.isApprox(up.topRows(1)));
   const PointsD place = PointsD::Zero(2, 3);
   PointsD normals(2, 3);

@@ -55,6 +55,7 @@ constexpr std::array<Stage, 12> schedule{{{3, 2, .18, .1},
                                           {5e-4, .02, .12, .024},
                                           {1e-4, .02, .12, .019},
                                           {1e-5, .02, .12, .013}}};
+
 /// What normals count as in a match (detail/matching.h), in face sizes. Far from all landmarks they hold the surface from
 /// the start; near them the landmarks do, and normals only tell the sides of a lid from its rim, once it lies there.
 struct Likeness {
@@ -90,6 +91,14 @@ const Manner& manner_of(const RegistrationOptions& options, const Eigen::VectorX
 Eigen::VectorXd normalised_areas(const Surface& surface) {
   const Eigen::VectorXd areas = vertex_areas(surface.positions, surface.triangles);
   return areas / areas.sum();
+}
+
+/// #L x 3.
+PointsD normals_at(const std::vector<SurfaceQuery::Hit>& places, const detail::MatchSurface& surface) {
+  PointsD normals(static_cast<Eigen::Index>(places.size()), 3);
+  for (std::size_t i = 0; i < places.size(); ++i)
+    normals.row(static_cast<Eigen::Index>(i)) = surface.normal_at(places[i]).transpose();
+  return normals;
 }
 
 void add_landmark_wishes(const std::vector<SurfaceQuery::Hit>& at, const Triangles& triangles,
@@ -236,20 +245,19 @@ Registration register_surfaces(const Surface& source, const Surface& target, con
   const Eigen::RowVector3d centre = target_landmarks.colwise().mean();
   const auto normalise = [&](const PointsD& p) { return PointsD((p.rowwise() - centre) / result.unit); };
   const PointsD fixed_points = normalise(target.positions), goals = normalise(target_landmarks);
-  const std::vector<SurfaceQuery::Hit> landmarks = detail::closest_points(source, source_landmarks);
+  const std::vector<SurfaceQuery::Hit> landmarks =
+      detail::closest_points(SurfaceQuery(source.positions, source.triangles), source_landmarks);
 
   result.source_openness = openness(source.positions, source.triangles, openness_rays);
   result.target_openness = openness(target.positions, target.triangles, openness_rays);
   detail::MatchSurface fixed(
       fixed_points, target.triangles, result.target_openness, normalised_areas(target),
       boundary_vertices(static_cast<std::size_t>(fixed_points.rows()), target.triangles));
-  const std::vector<SurfaceQuery::Hit> marked = detail::closest_points(target, target_landmarks);
+  const std::vector<SurfaceQuery::Hit> marked = detail::closest_points(fixed.query, goals);
   const Eigen::VectorXd trust = trust_of(options, goals.rows());
   const Manner& manner = manner_of(options, trust);
   Eigen::MatrixXd holding(0, 6);
-  if (options.landmarks_hold)
-    holding = detail::facing(goals, detail::normals_at(marked, target.triangles, fixed.normals),
-                             manner.turned_away);
+  if (options.landmarks_hold) holding = detail::facing(goals, normals_at(marked, fixed), manner.turned_away);
   fixed.far = detail::far_from(holding, detail::facing(fixed_points, fixed.normals, manner.turned_away),
                                near_landmarks, far_from_landmarks);
 

@@ -18,7 +18,7 @@ struct Surface {
 
 struct RegistrationOptions {
   /// Trust in each landmark, #L; empty: 1. The schedule's landmark weights are multiplied by it; 0 keeps a landmark as
-  /// the start only.
+  /// the start only. Where the mean is below a half the surface slides as little as closest points make it.
   Eigen::VectorXd landmark_trust;
   /// Landmarks hold their surroundings in place. Those that were found by themselves do not: with false, normals say as
   /// much around them as far from all landmarks, and the quadratic maps move the whole skin.
@@ -41,8 +41,8 @@ struct Registration {
 /// Non-rigid registration. The landmarks' spline, and far from all landmarks quadratic maps of the whole skin, give the
 /// start; a bi-Laplacian prior on the displacement from it loses its stiffness over twelve rounds. Closest points both ways
 /// pull, closest in place and, far from landmarks and at the end, in normal too; with gates on normal, distance, border and
-/// openness; point to plane with a tangential share, more where the surface bends (a lid's rim); half a step further than
-/// they pull, for surfaces slide slowly. Where the skin would fold by that (cartoons), the soft stages are done again by
+/// openness; point to plane with a tangential share, more where the surface bends (a lid's rim); where landmarks are trusted
+/// half a step further than they pull, for surfaces slide slowly. Where the skin would fold by that (cartoons), the soft stages are done again by
 /// place alone. Lid and lip lines and the neck's border pull onto each other while the surface is stiff; landmarks are
 /// priors that fade to a hundredth, and say less where they are vertices of a coarse mesh.
 ///   source_landmarks, target_landmarks  #L x 3, pairs by row, on or near the surfaces

@@ -28,22 +28,10 @@ Eigen::VectorXd edge_lengths(const Surface& surface) {
 
 }  // namespace
 
-std::vector<SurfaceQuery::Hit> closest_points(const Surface& surface, const PointsD& points) {
-  const SurfaceQuery query(surface.positions, surface.triangles);
+std::vector<SurfaceQuery::Hit> closest_points(const SurfaceQuery& surface, const PointsD& points) {
   std::vector<SurfaceQuery::Hit> hits;
-  for (Eigen::Index i = 0; i < points.rows(); ++i) hits.push_back(query.closest(points.row(i).transpose()));
+  for (Eigen::Index i = 0; i < points.rows(); ++i) hits.push_back(surface.closest(points.row(i).transpose()));
   return hits;
-}
-
-PointsD normals_at(const std::vector<SurfaceQuery::Hit>& at, const Triangles& triangles,
-                   const PointsD& normals) {
-  PointsD result = PointsD::Zero(static_cast<Eigen::Index>(at.size()), 3);
-  for (Eigen::Index i = 0; i < result.rows(); ++i) {
-    const SurfaceQuery::Hit& hit = at[static_cast<std::size_t>(i)];
-    for (int k = 0; k < 3; ++k) result.row(i) += hit.barycentric[k] * normals.row(triangles(hit.triangle, k));
-  }
-  result.rowwise().normalize();
-  return result;
 }
 
 Eigen::MatrixXd facing(const PointsD& positions, const PointsD& normals, double turn) {

@@ -10,11 +10,7 @@
 namespace mien::detail {
 
 /// The places of a surface closest to the points, in their order.
-std::vector<SurfaceQuery::Hit> closest_points(const Surface& surface, const PointsD& points);
-
-/// #L x 3, unit length: what a surface's vertex normals (#V x 3) are at these places.
-PointsD normals_at(const std::vector<SurfaceQuery::Hit>& at, const Triangles& triangles,
-                   const PointsD& normals);
+std::vector<SurfaceQuery::Hit> closest_points(const SurfaceQuery& surface, const PointsD& points);
 
 /// Places that face somewhere, #V x 6: turned away by a radian is as far as `turn`.
 Eigen::MatrixXd facing(const PointsD& positions, const PointsD& normals, double turn);

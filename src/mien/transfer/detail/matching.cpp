@@ -88,14 +88,6 @@ std::vector<SurfaceQuery::Hit> match(const MatchSurface& from, const MatchSurfac
   return hits;
 }
 
-Eigen::Vector3d smooth_normal(const MatchSurface& surface, const SurfaceQuery::Hit& hit) {
-  Eigen::Vector3d normal = Eigen::Vector3d::Zero();
-  for (int k = 0; k < 3; ++k)
-    normal += hit.barycentric[k] * surface.normals.row(surface.triangles(hit.triangle, k)).transpose();
-  const double length = normal.norm();
-  return length > 0 ? Eigen::Vector3d(normal / length) : surface.triangle_normal(hit.triangle);
-}
-
 /// The tangential share of a pull onto this place.
 double across(const MatchSurface& surface, const SurfaceQuery::Hit& hit, const MatchOptions& options) {
   double bend = 0;
@@ -127,6 +119,14 @@ Eigen::Vector3d MatchSurface::triangle_normal(int triangle) const {
   return (b - a).cross(c - a).normalized();
 }
 
+Eigen::Vector3d MatchSurface::normal_at(const SurfaceQuery::Hit& place) const {
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero();
+  for (int k = 0; k < 3; ++k)
+    normal += place.barycentric[k] * normals.row(triangles(place.triangle, k)).transpose();
+  const double length = normal.norm();
+  return length > 0 ? Eigen::Vector3d(normal / length) : triangle_normal(place.triangle);
+}
+
 std::vector<Wish> match_both_ways(const MatchSurface& moving, const MatchSurface& fixed,
                                   const MatchOptions& options, MatchMemory& memory) {
   std::vector<Wish> wishes;
@@ -141,7 +141,7 @@ std::vector<Wish> match_both_ways(const MatchSurface& moving, const MatchSurface
     wishes.push_back({{vertex, vertex, vertex},
                       {1, 0, 0},
                       hit.position,
-                      smooth_normal(fixed, hit),
+                      fixed.normal_at(hit),
                       mass,
                       across(fixed, hit, options) * mass});
   }

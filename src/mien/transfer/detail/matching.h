@@ -22,6 +22,8 @@ struct MatchSurface {
                const Eigen::VectorXd& masses, const std::vector<char>& boundary,
                SurfaceQuery::Build build = SurfaceQuery::Build::good);
   Eigen::Vector3d triangle_normal(int triangle) const;
+  /// The vertices' normals at a place, unit length; the triangle's where they cancel.
+  Eigen::Vector3d normal_at(const SurfaceQuery::Hit& place) const;
 };
 
 struct MatchOptions {

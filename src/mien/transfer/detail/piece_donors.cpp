@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <limits>
-#include <utility>
 
 #include "mien/core/error.h"
 #include "mien/geometry/similarity.h"
@@ -71,18 +70,6 @@ std::vector<char> choose_group(const PieceInput& in, const std::map<int, int>& v
   return group;
 }
 
-/// The points moved so that their box, along the head's own axes, is the others'.
-PointsD box_onto_box(const PieceInput& in, const PointsD& points, const PointsD& others) {
-  const Eigen::Matrix3d axes = head_axes(in);
-  const PointsD a = points * axes, b = others * axes;
-  const Eigen::RowVector3d low = a.colwise().minCoeff(), size = a.colwise().maxCoeff() - low;
-  const Eigen::RowVector3d to = b.colwise().minCoeff(), to_size = b.colwise().maxCoeff() - to;
-  PointsD moved = a.rowwise() - low;
-  for (int axis = 0; axis < 3; ++axis)
-    if (size[axis] > 0) moved.col(axis) *= to_size[axis] / size[axis];
-  return (moved.rowwise() + to) * axes.transpose();
-}
-
 /// Turned and scaled, round after round, to where the closest points are.
 ///   throws  what fit_similarity does: points on one line
 PointsD settle(const SurfaceQuery& query, PointsD points) {
@@ -94,20 +81,6 @@ PointsD settle(const SurfaceQuery& query, PointsD points) {
     points = fit_similarity(points, onto)(points);
   }
   return points;
-}
-
-/// The piece's vertices where they lie on its donors. The warp of the head follows the skin: what bends by itself may lie
-/// elsewhere in the head, be longer and point another way.
-PointsD lay_on_donors(const PieceInput& in, const SurfaceQuery& donors, const PointsD& positions,
-                      const PiecePlan& plan) {
-  if (!plan.same_kind || (plan.kind != PieceKind::tongue && plan.kind != PieceKind::lash)) return positions;
-  const PointsD boxed = box_onto_box(in, positions, in.warped_source(plan.donor_vertices, Eigen::all));
-  if (plan.kind != PieceKind::tongue) return boxed;
-  try {
-    return settle(donors, boxed);
-  } catch (const Error&) {
-    return boxed;  // a sliver, which has no way to turn
-  }
 }
 
 }  // namespace
@@ -146,6 +119,31 @@ std::map<int, int> DonorFinder::closest_on(const Donors& donors, const PointsD& 
   return votes;
 }
 
+/// The points moved so that their box, along the head's own axes, is the others'.
+PointsD DonorFinder::box_onto_box(const PointsD& points, const PointsD& others) const {
+  const PointsD a = points * axes_, b = others * axes_;
+  const Eigen::RowVector3d low = a.colwise().minCoeff(), size = a.colwise().maxCoeff() - low;
+  const Eigen::RowVector3d to = b.colwise().minCoeff(), to_size = b.colwise().maxCoeff() - to;
+  PointsD moved = a.rowwise() - low;
+  for (int axis = 0; axis < 3; ++axis)
+    if (size[axis] > 0) moved.col(axis) *= to_size[axis] / size[axis];
+  return (moved.rowwise() + to) * axes_.transpose();
+}
+
+/// The piece's vertices where they lie on its donors. The warp of the head follows the skin: what bends by itself may lie
+/// elsewhere in the head, be longer and point another way.
+PointsD DonorFinder::lay_on_donors(const SurfaceQuery& donors, const PointsD& positions,
+                                   const PiecePlan& plan) const {
+  if (!plan.same_kind || (plan.kind != PieceKind::tongue && plan.kind != PieceKind::lash)) return positions;
+  const PointsD boxed = box_onto_box(positions, in_.warped_source(plan.donor_vertices, Eigen::all));
+  if (plan.kind != PieceKind::tongue) return boxed;
+  try {
+    return settle(donors, boxed);
+  } catch (const Error&) {
+    return boxed;  // a sliver, which has no way to turn
+  }
+}
+
 bool DonorFinder::find(PiecePlan& plan) {
   const std::string& name = in_.target.piece_name[at(plan.piece)];
   const PointsD positions = in_.target.positions(plan.vertices, Eigen::all);
@@ -161,7 +159,7 @@ bool DonorFinder::find(PiecePlan& plan) {
     plan.donor_vertices.insert(plan.donor_vertices.end(), members.begin(), members.end());
   }
   const Donors& donors = of(group);
-  closest_on(donors, lay_on_donors(in_, *donors.query, positions, plan), plan, distance);
+  closest_on(donors, lay_on_donors(*donors.query, positions, plan), plan, distance);
   return true;
 }
 

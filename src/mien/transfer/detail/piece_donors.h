@@ -3,6 +3,7 @@
 
 #include <map>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "mien/geometry/surface_query.h"
@@ -14,7 +15,8 @@ namespace mien::detail {
 class DonorFinder {
  public:
   ///   kinds  per source piece
-  DonorFinder(const PieceInput& input, std::vector<PieceKind> kinds) : in_(input), kinds_(std::move(kinds)) {}
+  DonorFinder(const PieceInput& input, std::vector<PieceKind> kinds)
+      : in_(input), kinds_(std::move(kinds)), axes_(head_axes(input)) {}
 
   /// Fills in `places`, `donor_vertices` and `same_kind` of a plan that knows its piece, kind and vertices; false when
   /// nothing of the source lies near. A tongue is laid on a tongue, a lash on a lash, before its places are looked for.
@@ -28,9 +30,12 @@ class DonorFinder {
   const Donors& of(const std::vector<char>& pieces);
   std::map<int, int> closest_on(const Donors& donors, const PointsD& positions, PiecePlan& plan,
                                 double& median_distance) const;
+  PointsD box_onto_box(const PointsD& points, const PointsD& others) const;
+  PointsD lay_on_donors(const SurfaceQuery& donors, const PointsD& positions, const PiecePlan& plan) const;
 
   const PieceInput& in_;
   const std::vector<PieceKind> kinds_;
+  const Eigen::Matrix3d axes_;  // the head's
   std::map<std::vector<char>, Donors> known_;
 };
 
