@@ -62,6 +62,7 @@ nlohmann::json as_json(const TransferReport& report, const std::string& output) 
   return {{"output", output},
           {"landmarks", report.pairs.names.size()},
           {"scale", report.similarity.scale},
+          {"correspondence", name_of(report.correspondence)},
           {"deltas",
            {{"model", name_of(report.deltas.model)},
             {"warp_share", report.deltas.warp_share},
@@ -83,6 +84,8 @@ std::string as_text(const TransferResult& result, const std::string& output) {
                                  result.character.skins.empty() ? 0 : result.character.skins[0].joints.size(),
                                  result.character.clips.size(), result.character.parts.size(),
                                  report.pairs.names.size(), seconds);
+  if (report.correspondence == Correspondence::shared_uvs)
+    text += "correspondence: uvs: source and target share a UV layout\n";
   text +=
       fmt::format("deltas: {} ({:.0f} % warp; contacts {:.2f} over {} shapes, stretch {:.3f}): {}\n",
                   name_of(report.deltas.model), 100 * report.deltas.warp_share, report.deltas.contact_ratio,
@@ -188,6 +191,18 @@ void add_transfer(CLI::App& app, Common& common) {
       ->transform(CLI::CheckedTransformer(methods).description(""))
       ->type_name("NAME")
       ->default_str("register");
+  std::map<std::string, Correspondence> correspondences;
+  for (const Correspondence c :
+       {Correspondence::automatic, Correspondence::shared_uvs, Correspondence::surfaces})
+    correspondences[std::string(name_of(c))] = c;
+  command
+      ->add_option("--correspondence", options.correspondence,
+                   "What says which place is which: uvs (a UV layout that both share), surfaces "
+                   "(registration) or auto: "
+                   "uvs where they are shared")
+      ->transform(CLI::CheckedTransformer(correspondences).description(""))
+      ->type_name("NAME")
+      ->default_str("auto");
   std::map<std::string, DeltaModel> models;
   for (const DeltaModel model : {DeltaModel::automatic, DeltaModel::local, DeltaModel::raw, DeltaModel::copy,
                                  DeltaModel::warp, DeltaModel::thesis})

@@ -113,5 +113,13 @@ TEST_F(with_a_face, exaggerations_that_do_not_fit) {
   expect_clean_failure(folder, begin + "noSuchShape=120", "noSuchShape");
 }
 
+TEST_F(with_a_face, uvs_that_are_not_shared) {
+  ASSERT_EQ(run_mien(folder, "sample cartoon -o " + folder.path().string()).exit_code, 0);
+  expect_clean_failure(folder,
+                       "transfer " + face + " " + folder / "cartoon.glb" + " -o " + folder / "out.glb" +
+                           " --correspondence uvs",
+                       "does not share the source's UV layout");
+}
+
 }  // namespace
 }  // namespace mien::test

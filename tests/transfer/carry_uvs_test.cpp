@@ -60,7 +60,7 @@ double widest(const UvSet& set, const Faces& faces) {
 TEST(carry_uvs, no_faces_have_no_uvs) {
   const Cylinder c(12, 4);
   const Triangles triangles = triangulate(c.faces);
-  const UvSet set = carry_uvs({c.positions, triangles, c.uvs(), std::vector<char>(96, 1)}, c.positions, {});
+  const UvSet set = carry_uvs({triangles, c.uvs(), std::vector<char>(96, 1)}, c.positions, c.positions, {});
   EXPECT_EQ(set.coordinates.rows(), 0);
   EXPECT_TRUE(set.corners.empty());
 }
@@ -70,7 +70,7 @@ TEST(carry_uvs, where_the_source_has_none_there_is_none) {
   const Triangles triangles = triangulate(c.faces);
   std::vector<char> has(96, 1);
   std::fill(has.begin() + 48, has.end(), 0);  // the upper half
-  const UvSet set = carry_uvs({c.positions, triangles, c.uvs(), has}, c.positions, c.faces);
+  const UvSet set = carry_uvs({triangles, c.uvs(), has}, c.positions, c.positions, c.faces);
   ASSERT_EQ(set.corners.size(), c.faces.corner_count());
   for (std::size_t f = 0; f < c.faces.size(); ++f)
     for (int k = 0; k < 4; ++k) EXPECT_EQ(set.corners[c.faces.offset(f) + k] >= 0, f < 24) << f;
@@ -81,7 +81,7 @@ TEST(carry_uvs, the_identity_gives_the_sources_own_seam_included) {
   const Triangles triangles = triangulate(c.faces);
   const auto uvs = c.uvs();
   const UvSet set =
-      carry_uvs({c.positions, triangles, uvs, std::vector<char>(uvs.size(), 1)}, c.positions, c.faces);
+      carry_uvs({triangles, uvs, std::vector<char>(uvs.size(), 1)}, c.positions, c.positions, c.faces);
   ASSERT_EQ(set.corners.size(), c.faces.corner_count());
   EXPECT_EQ(set.coordinates.rows(), 25 * 7);  // one row a vertex, two on the seam
   for (std::size_t f = 0; f < c.faces.size(); ++f) {
@@ -101,7 +101,7 @@ TEST(carry_uvs, no_face_stretches_over_the_seam) {
     Cylinder target(around, 9);
     const double turn = 0.37 / around;  // no vertex on the seam
     target.positions *= Eigen::AngleAxisd(turn, Eigen::Vector3d::UnitY()).toRotationMatrix().transpose();
-    const UvSet set = carry_uvs({source.positions, triangles, uvs, std::vector<char>(uvs.size(), 1)},
+    const UvSet set = carry_uvs({triangles, uvs, std::vector<char>(uvs.size(), 1)}, source.positions,
                                 target.positions, target.faces);
     EXPECT_LT(widest(set, target.faces), 1.25 / around) << around;
     for (const int corner : set.corners) EXPECT_GE(corner, 0);

@@ -8,8 +8,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "mien/io/landmark_file.h"
-#include "mien/io/load.h"
+#include "transfer/load_marked.h"
 #include "transfer/transferred.h"
 
 namespace mien::test {
@@ -47,14 +46,6 @@ struct Case {
   std::vector<float> truth;   ///< shapes x vertices x 3
   std::vector<float> region;  ///< per vertex of the target, 1 on the outer skin
 };
-
-Character load_marked(const std::filesystem::path& mesh, const std::filesystem::path& landmarks) {
-  Character character = load(mesh);
-  LandmarkSet set = read_landmarks(landmarks, character);
-  character.landmarks = std::move(set.landmarks);
-  character.curves = std::move(set.curves);
-  return character;
-}
 
 Case load_case(const std::filesystem::path& folder) {
   Case loaded;

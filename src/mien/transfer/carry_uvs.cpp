@@ -3,7 +3,6 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <tuple>
 
 #include "mien/core/parallel.h"
 #include "mien/geometry/surface_query.h"
@@ -19,49 +18,15 @@ Eigen::Vector3d point_at(const PointsD& points, int r) {
   return points.row(r).transpose();
 }
 
-constexpr double same_uv = 1e-5;
 /// A corner looks at no more triangles than this around its face's centre.
 constexpr std::size_t most_triangles = 400;
 
-/// #T x 3: the triangle across edge (k, k + 1) in the same chart, -1 at a seam or border.
-std::vector<std::array<int, 3>> chart_neighbours(const UvSource& source) {
-  std::vector<std::array<int, 3>> neighbours(source.uvs.size(), {-1, -1, -1});
-  struct Edge {
-    int low, high, triangle, k;
-    bool operator<(const Edge& other) const {
-      return std::tie(low, high, triangle, k) < std::tie(other.low, other.high, other.triangle, other.k);
-    }
-  };
-  std::vector<Edge> edges;
-  edges.reserve(3 * source.uvs.size());
-  for (int t = 0; t < static_cast<int>(source.uvs.size()); ++t)
-    for (int k = 0; k < 3 && source.has_uv[at(t)]; ++k) {
-      const int a = source.triangles(t, k), b = source.triangles(t, (k + 1) % 3);
-      edges.push_back({std::min(a, b), std::max(a, b), t, k});
-    }
-  std::sort(edges.begin(), edges.end());
-  // The UV of the edge's lower or higher vertex in its triangle.
-  const auto uv = [&](const Edge& edge, int vertex) {
-    const bool first = source.triangles(edge.triangle, edge.k) == vertex;
-    return source.uvs[at(edge.triangle)][at(first ? edge.k : (edge.k + 1) % 3)];
-  };
-  for (std::size_t e = 0; e + 1 < edges.size(); ++e) {
-    const Edge &one = edges[e], &two = edges[e + 1];
-    const bool same_edge = one.low == two.low && one.high == two.high;
-    if (!same_edge || (uv(one, one.low) - uv(two, one.low)).norm() >= same_uv ||
-        (uv(one, one.high) - uv(two, one.high)).norm() >= same_uv)
-      continue;
-    neighbours[at(one.triangle)][at(one.k)] = two.triangle;
-    neighbours[at(two.triangle)][at(two.k)] = one.triangle;
-  }
-  return neighbours;
-}
-
 class CornerFinder {
  public:
-  CornerFinder(const UvSource& source) : source_(source), neighbours_(chart_neighbours(source)) {
-    middles_.resize(source.uvs.size());
-    for (int t = 0; t < static_cast<int>(source.uvs.size()); ++t)
+  CornerFinder(const UvLayout& layout, const PointsD& guide)
+      : layout_(layout), guide_(guide), neighbours_(chart_neighbours(layout)) {
+    middles_.resize(layout.uvs.size());
+    for (int t = 0; t < static_cast<int>(layout.uvs.size()); ++t)
       middles_[at(t)] = (corner(t, 0) + corner(t, 1) + corner(t, 2)) / 3;
   }
 
@@ -95,12 +60,12 @@ class CornerFinder {
     if (weights.minCoeff() < -1 || weights.maxCoeff() > 2)
       weights =
           closest_point_on_triangle(position, corner(best, 0), corner(best, 1), corner(best, 2)).barycentric;
-    const auto& uv = source_.uvs[at(best)];
+    const auto& uv = layout_.uvs[at(best)];
     return weights[0] * uv[0] + weights[1] * uv[1] + weights[2] * uv[2];
   }
 
  private:
-  Eigen::Vector3d corner(int t, int k) const { return point_at(source_.guide, source_.triangles(t, k)); }
+  Eigen::Vector3d corner(int t, int k) const { return point_at(guide_, layout_.triangles(t, k)); }
   /// Whether no point of the triangle can be as near to `position`, by its middle and its reach from there.
   bool is_further(int t, const Eigen::Vector3d& position, double square) const {
     const Eigen::Vector3d& middle = middles_[at(t)];
@@ -109,22 +74,23 @@ class CornerFinder {
     const double between = (position - middle).norm() - std::sqrt(reach);
     return between > 0 && between * between > square;
   }
-  const UvSource& source_;
+  const UvLayout& layout_;
+  const PointsD& guide_;
   std::vector<std::array<int, 3>> neighbours_;
   std::vector<Eigen::Vector3d> middles_;
 };
 
 /// Per corner of all faces its UV; NaN where the guide has none.
-std::vector<Eigen::Vector2d> corner_uvs(const UvSource& source, const PointsD& positions,
-                                        const Faces& faces) {
-  const CornerFinder finder(source);
-  const SurfaceQuery guide(source.guide, source.triangles);
+std::vector<Eigen::Vector2d> corner_uvs(const UvLayout& source, const PointsD& guide,
+                                        const PointsD& positions, const Faces& faces) {
+  const CornerFinder finder(source, guide);
+  const SurfaceQuery query(guide, source.triangles);
   std::vector<Eigen::Vector2d> uvs(faces.corner_count(), Eigen::Vector2d::Constant(std::nan("")));
   const auto facing = [&](const Eigen::Vector3d& normal) {
     return [&, normal](int t, const Eigen::Vector3d&) {
-      const Eigen::Vector3d a = point_at(source.guide, source.triangles(t, 0));
-      const Eigen::Vector3d b = point_at(source.guide, source.triangles(t, 1));
-      const Eigen::Vector3d c = point_at(source.guide, source.triangles(t, 2));
+      const Eigen::Vector3d a = point_at(guide, source.triangles(t, 0));
+      const Eigen::Vector3d b = point_at(guide, source.triangles(t, 1));
+      const Eigen::Vector3d c = point_at(guide, source.triangles(t, 2));
       return (b - a).cross(c - a).dot(normal) > 0;
     };
   };
@@ -142,10 +108,10 @@ std::vector<Eigen::Vector2d> corner_uvs(const UvSource& source, const PointsD& p
         radius = std::max(radius, a.norm());
         normal += a.cross(point_at(positions, face[(c + 1) % face.size()]) - centre);
       }
-      auto hit = guide.closest(centre);
+      auto hit = query.closest(centre);
       const auto same_side = facing(normal);
       if (!same_side(hit.triangle, hit.position)) {
-        const auto other = guide.closest(centre, reach_limit, same_side);
+        const auto other = query.closest(centre, reach_limit, same_side);
         if (other.triangle >= 0) hit = other;
       }
       if (!source.has_uv[at(hit.triangle)]) continue;
@@ -159,8 +125,8 @@ std::vector<Eigen::Vector2d> corner_uvs(const UvSource& source, const PointsD& p
 
 }  // namespace
 
-UvSet carry_uvs(const UvSource& source, const PointsD& positions, const Faces& faces) {
-  const auto uvs = corner_uvs(source, positions, faces);
+UvSet carry_uvs(const UvLayout& source, const PointsD& guide, const PointsD& positions, const Faces& faces) {
+  const auto uvs = corner_uvs(source, guide, positions, faces);
   std::vector<std::vector<int>> rows_of(static_cast<std::size_t>(positions.rows()));
   std::vector<Eigen::Vector2d> rows;
   UvSet result;

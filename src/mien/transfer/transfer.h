@@ -3,6 +3,7 @@
 
 #include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "mien/character/character.h"
@@ -18,8 +19,17 @@ enum class TransferMethod {
   thesis,        ///< the thesis's pipeline to the letter (4.7): the baseline that reports compare with
 };
 
+/// What says which place of the source a place of the target is.
+enum class Correspondence {
+  automatic,   ///< shared UVs where there are any, else the surfaces
+  shared_uvs,  ///< the UV layout that both have (shared_uvs.h)
+  surfaces,    ///< non-rigid registration (register_surfaces.h)
+};
+std::string_view name_of(Correspondence correspondence);
+
 struct TransferOptions {
   TransferMethod method = TransferMethod::registration;
+  Correspondence correspondence = Correspondence::automatic;  ///< of the method `registration`
   DeltaModel deltas = DeltaModel::automatic;
   double exaggeration = 1;                           ///< all shapes' displacements times this (thesis 5.4.2)
   std::map<std::string, double> shape_exaggeration;  ///< by name, times the one above
@@ -49,8 +59,9 @@ struct PieceReport {
 
 struct TransferReport {
   LandmarkPairs pairs;
-  Similarity similarity;  ///< source to target by the landmarks
-  double unit = 1;        ///< the face's size in target units
+  Similarity similarity;                                     ///< source to target by the landmarks
+  double unit = 1;                                           ///< the face's size in target units
+  Correspondence correspondence = Correspondence::surfaces;  ///< what it came to
   std::vector<Points>
       guide;  ///< per source part, #V: where its vertices come to lie on the target, model space
   std::vector<Eigen::VectorXf>
@@ -75,8 +86,8 @@ struct TransferResult {
 ///   source  landmarks inside; shapes, joints or both
 ///   target  landmarks inside
 ///   throws  invalid_input: nothing to transfer; landmarks that cannot carry a warp (names them); an exaggerated shape
-///           that the source does not have; no skin under the landmarks
-///   method  thesis chapter 4 with correspondence by non-rigid registration (register_surfaces.h), displacements by
+///           that the source does not have; no skin under the landmarks; shared UVs asked for and not there
+///   method  thesis chapter 4 with correspondence by shared UVs or non-rigid registration, displacements by
 ///           delta_models.h and contact.h, joints by a moving similarity, skin weights along the correspondence
 ///   cost    2 to 4 s for 27,000 vertices and 57 shapes on one core; memory about 40 bytes x vertices x shapes
 /// Same input, same bytes, at any thread count, also when several run side by side.

@@ -212,15 +212,15 @@ std::vector<char> kept_vertices(const Twin& twin, const Surface& source, const S
   return kept;
 }
 
-void settle_guide(const Twin& twin, const std::vector<char>& kept, const Surface& source, PointsD& guide) {
-  const PointsD placed = twin.placement(source.positions);
+void settle_guide(const PointsD& places, const std::vector<char>& kept, const Surface& source,
+                  PointsD& guide) {
   std::vector<int> slot(kept.size(), -1), free;
   for (std::size_t v = 0; v < kept.size(); ++v)
     if (!kept[v]) {
       slot[v] = static_cast<int>(free.size());
       free.push_back(static_cast<int>(v));
     }
-  PointsD change = placed - guide;
+  PointsD change = places - guide;
   for (const int v : free) change.row(v).setZero();
   if (!free.empty()) {
     const SparseMatrix laplacian = cotangent_laplacian(source.positions, source.triangles);
@@ -248,7 +248,7 @@ void settle_guide(const Twin& twin, const std::vector<char>& kept, const Surface
   for (std::size_t v = 0; v < kept.size(); ++v) {
     const auto row = static_cast<Eigen::Index>(v);
     guide.row(row) =
-        kept[v] ? Eigen::RowVector3d(placed.row(row)) : Eigen::RowVector3d(guide.row(row) + change.row(row));
+        kept[v] ? Eigen::RowVector3d(places.row(row)) : Eigen::RowVector3d(guide.row(row) + change.row(row));
   }
 }
 

@@ -36,9 +36,10 @@ std::optional<Twin> find_twin(const Surface& source, const Surface& target,
 ///   reach  how far a source vertex may be from the target's triangles, target units: what their chords cut off
 std::vector<char> kept_vertices(const Twin& twin, const Surface& source, const Surface& target, double reach);
 
-/// Brings the kept vertices of a guide to where the twin has them; the others follow by the harmonic extension of what that
+/// Brings the kept vertices of a guide to their places (#V x 3); the others follow by the harmonic extension of what that
 /// changes, so that nothing tears at the border.
-void settle_guide(const Twin& twin, const std::vector<char>& kept, const Surface& source, PointsD& guide);
+void settle_guide(const PointsD& places, const std::vector<char>& kept, const Surface& source,
+                  PointsD& guide);
 
 /// Gives the target's rows that lie on the source the mix of the source's rows there; other rows stay.
 ///   triangles  the source's; values #V source x K, target #V target x K

@@ -83,6 +83,7 @@ std::string as_json(const ReportInput& input, const Data& data) {
   json["landmarks"] = {{"count", report.pairs.names.size()},      {"mean_miss", data.landmark_mean},
                        {"worst_miss", data.landmark_worst},       {"worst", data.worst_landmark},
                        {"only_source", report.pairs.only_source}, {"only_target", report.pairs.only_target}};
+  json["correspondence"] = name_of(report.correspondence);
   json["scale"] = report.similarity.scale;
   json["face_size"] = report.unit;
   json["guide_distance"] = {

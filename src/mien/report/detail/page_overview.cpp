@@ -25,6 +25,7 @@ std::string facts(const PageInput& page) {
   for (const StepTime& step : report.steps) seconds += step.seconds;
   std::string text = "<dl class=\"facts\">\n";
   text += fact("method", page.input.options.method == TransferMethod::thesis ? "thesis" : "register");
+  text += fact("correspondence", std::string(name_of(report.correspondence)));
   text += fact("landmarks", std::to_string(report.pairs.names.size()));
   text += fact("vertices, source / target", fmt::format("{} / {}", source_vertices, vertices));
   text += fact("shapes", std::to_string(character.shapes.size()));

@@ -164,42 +164,7 @@ WeightMatrix select_rows(const WeightMatrix& matrix, const std::vector<int>& row
   return result;
 }
 
-std::optional<SkinUvs> skin_uvs(const Character& source, const Pool& pool, const PoolSurface& skin) {
-  SkinUvs result;
-  result.triangles = skin.surface.triangles;
-  bool any = false;
-  int last_part = -1, last_face = -1, fan = 0;
-  std::vector<int> fan_of(pool.triangle_face.size());
-  for (std::size_t t = 0; t < pool.triangle_face.size(); ++t) {
-    const bool same = pool.triangle_part[t] == last_part && pool.triangle_face[t] == last_face;
-    fan = same ? fan + 1 : 0;
-    fan_of[t] = fan;
-    last_part = pool.triangle_part[t];
-    last_face = pool.triangle_face[t];
-  }
-  for (const int t : skin.triangles) {
-    const Mesh& mesh = source.parts[at(pool.triangle_part[at(t)])].mesh;
-    std::array<Eigen::Vector2d, 3> uv{Eigen::Vector2d::Zero(), Eigen::Vector2d::Zero(),
-                                      Eigen::Vector2d::Zero()};
-    bool has = !mesh.uvs.empty();
-    const std::size_t face = at(pool.triangle_face[at(t)]);
-    const std::array<int, 3> corner{0, fan_of[at(t)] + 1, fan_of[at(t)] + 2};
-    for (std::size_t k = 0; k < 3 && has; ++k) {
-      const UvSet& set = mesh.uvs.front();
-      const int row = set.corners.empty() ? mesh.faces[face][at(corner[k])]
-                                          : set.corners[at(mesh.faces.offset(face) + corner[k])];
-      has = row >= 0;
-      if (has) uv[k] = set.coordinates.row(row).transpose().cast<double>();
-    }
-    result.uvs.push_back(uv);
-    result.has_uv.push_back(has);
-    any = any || has;
-  }
-  if (!any) return std::nullopt;
-  return result;
-}
-
-void assign_uvs(const SkinUvs& source, const PointsD& guide, const Pool& pool, const PoolSurface& skin,
+void assign_uvs(const UvLayout& source, const PointsD& guide, const Pool& pool, const PoolSurface& skin,
                 int part, Mesh& mesh) {
   Faces skin_faces;
   std::vector<char> is_skin(mesh.faces.size(), 0);
@@ -213,8 +178,7 @@ void assign_uvs(const SkinUvs& source, const PointsD& guide, const Pool& pool, c
   PointsD positions(mesh.positions.rows(), 3);
   for (Eigen::Index v = 0; v < positions.rows(); ++v)
     positions.row(v) = pool.positions.row(pool.welded[at(part)][static_cast<std::size_t>(v)]);
-  const UvSet carried =
-      carry_uvs({guide, source.triangles, source.uvs, source.has_uv}, positions, skin_faces);
+  const UvSet carried = carry_uvs(source, guide, positions, skin_faces);
   UvSet set;
   set.coordinates = carried.coordinates;
   set.corners.assign(mesh.faces.corner_count(), -1);

@@ -1,7 +1,6 @@
 #pragma once
 /// Putting carried attributes into the target's own parts and vertex order.
 
-#include <optional>
 #include <vector>
 
 #include "mien/character/character.h"
@@ -30,17 +29,9 @@ WeightMatrix pooled_skin_weights(const Character& source, const Pool& pool, cons
 
 WeightMatrix select_rows(const WeightMatrix& matrix, const std::vector<int>& rows);
 
-/// The source skin's first UV set by triangle, none when no part has UVs. `guide` must outlive it.
-struct SkinUvs {
-  Triangles triangles;
-  std::vector<std::array<Eigen::Vector2d, 3>> uvs;
-  std::vector<char> has_uv;
-};
-std::optional<SkinUvs> skin_uvs(const Character& source, const Pool& pool, const PoolSurface& skin);
-
 /// Gives part `part`'s skin faces UVs from the guide; faces off the skin get none. Leaves the mesh alone when no face
 /// of it is skin.
-void assign_uvs(const SkinUvs& source, const PointsD& guide, const Pool& pool, const PoolSurface& skin,
+void assign_uvs(const UvLayout& source, const PointsD& guide, const Pool& pool, const PoolSurface& skin,
                 int part, Mesh& mesh);
 
 /// The material with a base-colour image that most triangles of the source's skin have; -1: none.

@@ -1,6 +1,6 @@
 #pragma once
-/// One transfer on its way: each step reads what the steps before left and adds its own. What is done on the skin is in
-/// transfer.cpp, what hangs on it in run_rig.cpp.
+/// One transfer on its way: each step reads what the steps before left and adds its own. Where the source lies on the target
+/// is found in run_guide.cpp, shapes are carried in transfer.cpp, what hangs on the skin in run_rig.cpp.
 
 #include <memory>
 #include <optional>
@@ -14,6 +14,7 @@
 #include "mien/transfer/detail/pool.h"
 #include "mien/transfer/register_surfaces.h"
 #include "mien/transfer/rig_map.h"
+#include "mien/transfer/shared_uvs.h"
 #include "mien/transfer/transfer.h"
 #include "mien/transfer/twin.h"
 
@@ -41,8 +42,12 @@ class Run {
   void find_guide();
   bool register_twin(const PointsD& from, const PointsD& to);
   void keep_twin();
+  bool register_by_uvs(const PointsD& from, const PointsD& to);
   std::vector<SourcePoint> find_points() const;
+  std::vector<SourcePoint> points_by_uvs() const;
+  std::vector<SourcePoint> points_on_guide() const;
   void warp_source();
+  void place_pieces_by_uvs();
   void find_places();
   void place_joints();
   void find_scale();
@@ -81,7 +86,8 @@ class Run {
   PoolSurface source_surface_, target_surface_;  // the skins
   std::optional<Twin> twin_;                     // of the pools: the target is the source with another mesh
   Twin twin_skin_;                               // the same of the skins
-  std::vector<char> kept_;  // per vertex of the source's skin: the target has it where it was
+  std::vector<char> kept_;        // per vertex of the source's skin: the target has it where it was
+  std::optional<SharedUvs> uvs_;  // of the skins, where they share a layout
   Registration registration_;
   DeltaMaps maps_;
   DeltaModel model_ = DeltaModel::automatic;

@@ -15,6 +15,7 @@
 #include "mien/transfer/carry_wires.h"
 #include "mien/transfer/detail/assemble_target.h"
 #include "mien/transfer/detail/at.h"
+#include "mien/transfer/detail/pool_uvs.h"
 #include "mien/transfer/detail/run.h"
 
 namespace mien::detail {
@@ -164,7 +165,7 @@ void Run::carry_weights() {
 }
 
 void Run::carry_texture_coordinates() {
-  const auto source = skin_uvs(source_, source_pool_, source_surface_);
+  const auto source = uv_layout(source_, source_pool_, source_surface_);
   if (!source) return;
   const int material = skin_material(source_, source_pool_, source_surface_);
   int shared = -1;
