@@ -88,10 +88,10 @@ TEST(surface_query, an_attribute_tells_close_places_apart) {
   const SurfaceQuery query(s.positions, s.triangles);
   const Vector3d point(0.9, 0.5, 1.05);
   EXPECT_TRUE(query.closest(point).position.isApprox(Vector3d(0.9, 0.5, 1), 1e-9));
-  const auto alike = query.most_alike(point, 10 * Vector3d(0.5, 0, -0.2), 10 * normals);
+  const auto alike = query.most_alike(point, 10 * Vector3d(0.5, 0, -0.2), query.with(10 * normals));
   EXPECT_NEAR(alike.position.x(), 1, 1e-9);
   EXPECT_NEAR(alike.distance, (alike.position - point).norm(), 1e-12);
-  const auto plain = query.most_alike(point, Vector3d::Zero(), PointsD::Zero(normals.rows(), 3));
+  const auto plain = query.most_alike(point, Vector3d::Zero(), query.with(PointsD::Zero(normals.rows(), 3)));
   EXPECT_TRUE(plain.position.isApprox(query.closest(point).position, 1e-9));
 }
 
@@ -106,9 +106,9 @@ TEST(surface_query, a_guess_and_a_fast_build_change_no_answer) {
   for (Eigen::Index i = 0; i < points.rows(); ++i) {
     const Vector3d point = points.row(i).transpose(), normal = 0.3 * points.row((i + 1) % 200).transpose();
     EXPECT_EQ(fast.closest(point).triangle, good.closest(point).triangle);
-    const auto alike = good.most_alike(point, normal, normals);
+    const auto alike = good.most_alike(point, normal, good.with(normals));
     for (const int guess : {alike.triangle, 0, static_cast<int>(s.triangles.rows()) - 1}) {
-      const auto guessed = fast.most_alike(point, normal, normals, guess);
+      const auto guessed = fast.most_alike(point, normal, fast.with(normals), guess);
       EXPECT_EQ(guessed.triangle, alike.triangle);
       EXPECT_EQ(guessed.position, alike.position);
       EXPECT_EQ(guessed.distance, alike.distance);
@@ -126,6 +126,13 @@ TEST(surface_query, rays) {
   EXPECT_TRUE(query.occluded({0.3, 0.6, 3}, {0, 0, -1}, 0, 10));
   EXPECT_FALSE(query.occluded({0.3, 0.6, 3}, {0, 0, -1}, 0, 1.9));
   EXPECT_FALSE(query.occluded({2, 0.6, 3}, {0, 0, -1}, 0, 10));
+  PointsD directions(33, 3);
+  for (int r = 0; r < 33; ++r) directions.row(r) = Vector3d(0.2 * (r % 11) - 1, 0.1, -1).normalized();
+  int free = 0;
+  for (int r = 0; r < 33; ++r) free += !query.occluded({0.3, 0.6, 3}, directions.row(r), 0, 10);
+  EXPECT_GT(free, 0);
+  EXPECT_LT(free, 33);
+  EXPECT_EQ(query.count_free({0.3, 0.6, 3}, directions, 10), free);
 }
 
 TEST(surface_query, does_not_depend_on_the_unit) {

@@ -61,9 +61,7 @@ Eigen::VectorXd openness(const PointsD& positions, const Triangles& triangles, i
                                             : Eigen::Vector3d(positions.row(next) - positions.row(row));
       const Eigen::Matrix3d turn = frame_along(normal, edge);
       const Eigen::Vector3d origin = positions.row(row).transpose() + 1e-4 * diagonal * normal;
-      int free = 0;
-      for (int r = 0; r < rays; ++r)
-        free += !surface.occluded(origin, turn * Eigen::Vector3d(directions.row(r)), 0, 10 * diagonal);
+      const int free = surface.count_free(origin, directions * turn.transpose(), 10 * diagonal);
       open[row] = static_cast<double>(free) / rays;
     }
   });

@@ -5,7 +5,10 @@
 
 #include <embree3/rtcore.h>
 
+#include <algorithm>
+#include <cmath>
 #include <string>
+#include <utility>
 
 #include "mien/core/error.h"
 #include "mien/geometry/triangle.h"
@@ -33,7 +36,7 @@ struct SurfaceQuery::Scene {
 namespace {
 
 constexpr int no_triangle = std::numeric_limits<int>::max();
-using PointAndAttribute = Eigen::Matrix<double, 6, 1>;
+using Alike = SurfaceQuery::Alike;
 
 /// Equally close triangles: the one of the lowest number.
 bool is_closer(const SurfaceQuery::Hit& best, int triangle, double distance) {
@@ -75,23 +78,26 @@ bool visit_triangle(RTCPointQueryFunctionArguments* args) {
 
 struct AlikeSearch {
   const PointsD& positions;
-  const PointsD& attributes;
+  const SurfaceQuery::Attributes& attributes;
   const Triangles& triangles;
   double slack;
-  PointAndAttribute point;
+  Alike point;
   SurfaceQuery::Hit best;
 };
 
 /// Whether triangle `t` is closer than the best one so far.
 bool look_at_alike(AlikeSearch& search, int t) {
-  PointAndAttribute corner[3];
+  const auto triangle = static_cast<std::size_t>(t);
+  const double least =
+      (search.point - search.attributes.centres[triangle]).norm() - search.attributes.radii[triangle];
+  if (least * (1 - 1e-9) > search.best.distance) return false;
+  Alike corner[3];
   for (int k = 0; k < 3; ++k) {
     const int v = search.triangles(t, k);
-    corner[k] << search.positions.row(v).transpose(), search.attributes.row(v).transpose();
+    corner[k] << search.positions.row(v).transpose(), search.attributes.values.row(v).transpose();
   }
-  const Eigen::Vector3d weights =
-      closest_barycentric<PointAndAttribute>(search.point, corner[0], corner[1], corner[2]);
-  const PointAndAttribute found = weights[0] * corner[0] + weights[1] * corner[1] + weights[2] * corner[2];
+  const Eigen::Vector3d weights = closest_barycentric<Alike>(search.point, corner[0], corner[1], corner[2]);
+  const Alike found = weights[0] * corner[0] + weights[1] * corner[1] + weights[2] * corner[2];
   const double distance = (found - search.point).norm();
   if (!is_closer(search.best, t, distance)) return false;
   search.best = {t, weights, found.head<3>(), distance};
@@ -188,8 +194,26 @@ SurfaceQuery::Hit SurfaceQuery::closest(const Eigen::Vector3d& point, double max
   return search.best.triangle == no_triangle ? Hit{} : search.best;
 }
 
+SurfaceQuery::Attributes SurfaceQuery::with(PointsD values) const {
+  const Triangles& triangles = scene_->triangles;
+  Attributes result{std::move(values), std::vector<Alike>(static_cast<std::size_t>(triangles.rows())),
+                    std::vector<double>(static_cast<std::size_t>(triangles.rows()))};
+  for (Eigen::Index t = 0; t < triangles.rows(); ++t) {
+    Alike corner[3];
+    for (int k = 0; k < 3; ++k)
+      corner[k] << scene_->positions.row(triangles(t, k)).transpose(),
+          result.values.row(triangles(t, k)).transpose();
+    const Alike centre = (corner[0] + corner[1] + corner[2]) / 3;
+    double square = 0;
+    for (const Alike& c : corner) square = std::max(square, (c - centre).squaredNorm());
+    result.centres[static_cast<std::size_t>(t)] = centre;
+    result.radii[static_cast<std::size_t>(t)] = std::sqrt(square);
+  }
+  return result;
+}
+
 SurfaceQuery::Hit SurfaceQuery::most_alike(const Eigen::Vector3d& point, const Eigen::Vector3d& attribute,
-                                           const PointsD& attributes, int guess) const {
+                                           const Attributes& attributes, int guess) const {
   AlikeSearch search{scene_->positions, attributes, scene_->triangles, scene_->slack, {}, {}};
   search.point << point, attribute;
   search.best.triangle = no_triangle;
@@ -223,6 +247,33 @@ bool SurfaceQuery::occluded(const Eigen::Vector3d& origin, const Eigen::Vector3d
   rtcInitIntersectContext(&context);
   rtcOccluded1(scene_->scene, &context, &ray);
   return ray.tfar < 0;
+}
+
+int SurfaceQuery::count_free(const Eigen::Vector3d& origin, const PointsD& directions, double far) const {
+  constexpr int packet = 16;
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  int free = 0;
+  for (Eigen::Index first = 0; first < directions.rows(); first += packet) {
+    RTCRay16 rays{};
+    alignas(64) int valid[packet];
+    const int count = static_cast<int>(std::min<Eigen::Index>(packet, directions.rows() - first));
+    for (int i = 0; i < packet; ++i) {
+      valid[i] = i < count ? -1 : 0;
+      const Eigen::Index r = first + std::min(i, count - 1);
+      rays.org_x[i] = static_cast<float>(origin.x());
+      rays.org_y[i] = static_cast<float>(origin.y());
+      rays.org_z[i] = static_cast<float>(origin.z());
+      rays.dir_x[i] = static_cast<float>(directions(r, 0));
+      rays.dir_y[i] = static_cast<float>(directions(r, 1));
+      rays.dir_z[i] = static_cast<float>(directions(r, 2));
+      rays.tfar[i] = static_cast<float>(far);
+      rays.mask[i] = ~0u;
+    }
+    rtcOccluded16(valid, scene_->scene, &context, &rays);
+    for (int i = 0; i < count; ++i) free += !(rays.tfar[i] < 0);
+  }
+  return free;
 }
 
 }  // namespace mien

@@ -6,6 +6,7 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "mien/geometry/mesh.h"
 
@@ -44,12 +45,21 @@ class SurfaceQuery {
   /// The closest point on triangles that `accept` takes (it sees the closest point of each candidate).
   Hit closest(const Eigen::Vector3d& point, double max_distance, const Accept& accept) const;
 
-  /// The point of the mesh that is most alike in place and in an attribute that varies over the mesh (its normal times a
-  /// length, say): the least |x - point|^2 + |a(x) - attribute|^2, a linear in every triangle. `distance` is that of the
-  /// places alone. Cost: grows with the number of triangles that are as close as the attributes differ.
-  ///   attributes  #V x 3
-  ///   guess       a triangle that may be it, or -1: looked at first, so that less is searched; the answer is the same
-  Hit most_alike(const Eigen::Vector3d& point, const Eigen::Vector3d& attribute, const PointsD& attributes,
+  /// A place and an attribute there.
+  using Alike = Eigen::Matrix<double, 6, 1>;
+  /// An attribute that varies over the mesh (its normal times a length, say), made ready for `most_alike`.
+  struct Attributes {
+    PointsD values;              ///< #V x 3
+    std::vector<Alike> centres;  ///< #T: a ball around each triangle, of its places and attributes together
+    std::vector<double> radii;   ///< #T
+  };
+  Attributes with(PointsD values) const;
+
+  /// The point of the mesh that is most alike in place and attribute: the least |x - point|^2 + |a(x) - attribute|^2, a
+  /// linear in every triangle. `distance` is that of the places alone. Cost: grows with the number of triangles that are
+  /// as close as the attributes differ.
+  ///   guess  a triangle that may be it, or -1: looked at first, so that less is searched; the answer is the same
+  Hit most_alike(const Eigen::Vector3d& point, const Eigen::Vector3d& attribute, const Attributes& attributes,
                  int guess = -1) const;
 
   /// The first triangle along the ray from `origin` in `direction` (unit) between `near` and `far`.
@@ -59,6 +69,10 @@ class SurfaceQuery {
   /// Whether anything lies on the ray between `near` and `far`.
   bool occluded(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, double near,
                 double far) const;
+
+  /// How many of the rays from `origin` in `directions` (#R x 3, unit) have nothing on them up to `far`; many at once, which
+  /// costs half of one by one.
+  int count_free(const Eigen::Vector3d& origin, const PointsD& directions, double far) const;
 
  private:
   struct Scene;

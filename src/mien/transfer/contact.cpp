@@ -3,6 +3,7 @@
 #include "mien/transfer/contact.h"
 
 #include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <Eigen/SparseCholesky>
 #include <algorithm>
@@ -25,7 +26,7 @@ constexpr double largest_gap = 0.25;
 constexpr double shrunk = 0.4;  // deformed gap over neutral gap
 constexpr double least_closed = 0.6;
 constexpr double air = 0.08;  // distance of the gap's middle from the surface, of the gap
-constexpr std::size_t least_pairs = 5, most_pairs = 80, most_seeds = 500;
+constexpr std::size_t least_pairs = 5, most_pairs = 80, most_seeds = 300;
 constexpr int least_shapes = 5;
 constexpr double jacobian_radius = 0.095, stretch_radius = 0.3, lid_radius = 0.12;
 
@@ -40,37 +41,49 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
-/// Vertices in cells of a grid, to ask for those near a point.
+/// Vertices inside a box in cells of a grid, to ask for those near a point.
 class Grid {
  public:
-  Grid(const PointsD& points, double cell) : points_(points), cell_(cell) {
-    for (Eigen::Index v = 0; v < points.rows(); ++v)
-      cells_[key(index(points.row(v)))].push_back(static_cast<int>(v));
+  struct Entry {
+    Eigen::Vector3d point, neutral;
+    int vertex;
+  };
+  Grid(const PointsD& points, const PointsD& neutral, const Eigen::AlignedBox3d& box, double cell)
+      : cell_(cell) {
+    for (int v = 0; v < static_cast<int>(points.rows()); ++v) {
+      const Eigen::Vector3d point = row(points, v);
+      if (box.contains(point)) cells_[key(index(point))].push_back({point, row(neutral, v), v});
+    }
   }
+  /// Visits what is in the cell of `point` and those around it, but for cells further away than `least`, a square that the
+  /// visits may make smaller.
   template <class Visit>
-  void near(const Eigen::Vector3d& point, const Visit& visit) const {
-    const Eigen::Array3i centre = index(point.transpose());
+  void near(const Eigen::Vector3d& point, const double& least, const Visit& visit) const {
+    const Eigen::Array3i centre = index(point);
+    const auto look = [&](const Eigen::Array3i& at) {
+      const Eigen::Array3d low = cell_ * at.cast<double>();
+      const Eigen::Array3d off = (low - point.array()).max(point.array() - low - cell_).max(0);
+      if (off.square().sum() >= least) return;
+      const auto found = cells_.find(key(at));
+      if (found == cells_.end()) return;
+      for (const Entry& entry : found->second) visit(entry);
+    };
+    look(centre);
     for (int x = -1; x <= 1; ++x)
       for (int y = -1; y <= 1; ++y)
-        for (int z = -1; z <= 1; ++z) {
-          const auto found = cells_.find(key(centre + Eigen::Array3i(x, y, z)));
-          if (found == cells_.end()) continue;
-          for (const int v : found->second) visit(v);
-        }
+        for (int z = -1; z <= 1; ++z)
+          if (x != 0 || y != 0 || z != 0) look(centre + Eigen::Array3i(x, y, z));
   }
 
  private:
-  Eigen::Array3i index(const Eigen::RowVector3d& p) const {
-    return (p.transpose() / cell_).array().floor().cast<int>();
-  }
+  Eigen::Array3i index(const Eigen::Vector3d& p) const { return (p / cell_).array().floor().cast<int>(); }
   static std::int64_t key(const Eigen::Array3i& i) {
     return ((static_cast<std::int64_t>(i[0]) & 0x1fffff) << 42) |
            ((static_cast<std::int64_t>(i[1]) & 0x1fffff) << 21) |
            (static_cast<std::int64_t>(i[2]) & 0x1fffff);
   }
-  const PointsD& points_;
   double cell_;
-  std::unordered_map<std::int64_t, std::vector<int>> cells_;
+  std::unordered_map<std::int64_t, std::vector<Entry>> cells_;
 };
 
 /// How far displacements close the gap from a to b, as a fraction of it.
@@ -134,6 +147,17 @@ ContactModel::~ContactModel() = default;
 
 namespace {
 
+double square(double x) {
+  return x * x;
+}
+
+Eigen::AlignedBox3d grown_box(const PointsD& points, const std::vector<int>& rows, double by) {
+  Eigen::AlignedBox3d box;
+  for (const int r : rows) box.extend(row(points, r));
+  const Eigen::Vector3d margin = Eigen::Vector3d::Constant(by);
+  return {box.min() - margin, box.max() + margin};
+}
+
 /// Rows that move, at most `most_seeds` of them, evenly chosen.
 std::vector<int> moving_rows(const PointsD& deltas) {
   const Eigen::VectorXd size = deltas.rowwise().norm();
@@ -152,17 +176,22 @@ std::vector<ContactPair> find_pairs(const PointsD& positions, const PointsD& del
   std::vector<ContactPair> found;
   if (!(deltas.cwiseAbs().maxCoeff() > 1e-3 * unit)) return found;
   const PointsD deformed = positions + deltas;
-  const Grid grid(deformed, shrunk * largest_gap * unit / 2);
-  for (const int a : moving_rows(deltas)) {
+  const double reach = shrunk * largest_gap * unit;
+  const std::vector<int> moving = moving_rows(deltas);
+  const Grid grid(deformed, positions, grown_box(deformed, moving, reach), reach / 2);
+  for (const int a : moving) {
     int best = -1;
-    double best_distance = shrunk * largest_gap * unit;
-    grid.near(row(deformed, a), [&](int b) {
-      const double distance = (row(deformed, b) - row(deformed, a)).norm();
+    double best_distance = reach * reach;  // squares
+    const Eigen::Vector3d place = row(deformed, a), neutral = row(positions, a);
+    grid.near(place, best_distance, [&](const Grid::Entry& entry) {
+      const double distance = (entry.point - place).squaredNorm();
       if (distance >= best_distance) return;
-      const double gap = (row(positions, b) - row(positions, a)).norm();
-      if (gap < least_gap * unit || gap > largest_gap * unit || distance > shrunk * gap) return;
-      if (closing(positions, deltas, a, b) < least_closed) return;
-      best = b;
+      const double gap = (entry.neutral - neutral).squaredNorm();
+      if (gap < square(least_gap * unit) || gap > square(largest_gap * unit) ||
+          distance > square(shrunk) * gap)
+        return;
+      if (closing(positions, deltas, a, entry.vertex) < least_closed) return;
+      best = entry.vertex;
       best_distance = distance;
     });
     if (best < 0) continue;
@@ -303,6 +332,43 @@ double ContactModel::lid_warp_share(std::size_t shape, const PointsD& moved) con
   return std::clamp((0.8 - median(kept)) / 0.2, 0.0, 1.0);
 }
 
+namespace {
+
+/// A part of a surface, row i its vertex `vertices[i]`.
+struct Piece {
+  Surface surface;
+  std::vector<int> vertices, row_of;  // row_of: -1 where a vertex is not in it
+};
+
+/// The triangles that begin within `radius` of the middle of some vertices, and these.
+Piece piece_around(const PointsD& positions, const Triangles& triangles, const std::vector<int>& some,
+                   double radius) {
+  Piece piece;
+  piece.row_of.assign(static_cast<std::size_t>(positions.rows()), -1);
+  const auto take = [&](int vertex) {
+    int& r = piece.row_of[static_cast<std::size_t>(vertex)];
+    if (r < 0) {
+      r = static_cast<int>(piece.vertices.size());
+      piece.vertices.push_back(vertex);
+    }
+    return r;
+  };
+  const Eigen::Vector3d middle = positions(some, Eigen::all).colwise().mean().transpose();
+  for (const int vertex : some) take(vertex);
+  piece.surface.triangles.resize(triangles.rows(), 3);
+  Eigen::Index count = 0;
+  for (Eigen::Index t = 0; t < triangles.rows(); ++t) {
+    if ((row(positions, triangles(t, 0)) - middle).norm() >= radius) continue;
+    for (int k = 0; k < 3; ++k) piece.surface.triangles(count, k) = take(triangles(t, k));
+    ++count;
+  }
+  piece.surface.triangles.conservativeResize(count, 3);
+  piece.surface.positions = positions(piece.vertices, Eigen::all);
+  return piece;
+}
+
+}  // namespace
+
 void ContactModel::close_lids(std::size_t shape, PointsD& moved) const {
   if (!closes_lid(shape)) return;
   const State& s = *state_;
@@ -328,17 +394,10 @@ void ContactModel::close_lids(std::size_t shape, PointsD& moved) const {
 
   // The factor is one far from the lid: the system is set up on the surface around the contacts alone.
   const double radius = lid_radius * s.unit, area = std::numbers::pi * radius * radius;
-  const Surface around = [&] {
-    Eigen::Vector3d middle = Eigen::Vector3d::Zero();
-    for (const Row& r : rows) middle += row(s.guide, r.a) / static_cast<double>(rows.size());
-    Surface piece{s.guide, Triangles(s.source.triangles.rows(), 3)};
-    Eigen::Index count = 0;
-    for (Eigen::Index t = 0; t < s.source.triangles.rows(); ++t)
-      if ((row(s.guide, s.source.triangles(t, 0)) - middle).norm() < 4 * radius)
-        piece.triangles.row(count++) = s.source.triangles.row(t);
-    piece.triangles.conservativeResize(count, 3);
-    return piece;
-  }();
+  std::vector<int> contacts_at;
+  for (const Row& r : rows) contacts_at.insert(contacts_at.end(), {r.a, r.b});
+  const Piece piece = piece_around(s.guide, s.source.triangles, contacts_at, 4 * radius);
+  const Surface& around = piece.surface;
   SparseMatrix system = radius * radius * cotangent_laplacian(around.positions, around.triangles);
   const Eigen::VectorXd masses = vertex_areas(around.positions, around.triangles);
   for (Eigen::Index v = 0; v < masses.size(); ++v)
@@ -349,18 +408,21 @@ void ContactModel::close_lids(std::size_t shape, PointsD& moved) const {
   Eigen::VectorXd right = Eigen::VectorXd::Zero(masses.size());
   std::vector<Eigen::Triplet<double>> entries;
   for (const Row& r : rows) {
-    entries.emplace_back(r.a, r.a, weight * r.qa * r.qa);
-    entries.emplace_back(r.b, r.b, weight * r.qb * r.qb);
-    entries.emplace_back(r.a, r.b, weight * r.qa * r.qb);
-    entries.emplace_back(r.b, r.a, weight * r.qa * r.qb);
-    right[r.a] += weight * r.qa * r.goal;
-    right[r.b] += weight * r.qb * r.goal;
+    const int a = piece.row_of[static_cast<std::size_t>(r.a)],
+              b = piece.row_of[static_cast<std::size_t>(r.b)];
+    entries.emplace_back(a, a, weight * r.qa * r.qa);
+    entries.emplace_back(b, b, weight * r.qb * r.qb);
+    entries.emplace_back(a, b, weight * r.qa * r.qb);
+    entries.emplace_back(b, a, weight * r.qa * r.qb);
+    right[a] += weight * r.qa * r.goal;
+    right[b] += weight * r.qb * r.goal;
   }
   SparseMatrix contacts(masses.size(), masses.size());
   contacts.setFromTriplets(entries.begin(), entries.end());
   const Eigen::SimplicialLDLT<SparseMatrix> factor(system + contacts);
   const Eigen::VectorXd h = factor.solve(right);
-  moved = (1 + h.array()).max(0.5).min(2.0).matrix().asDiagonal() * moved;
+  for (std::size_t i = 0; i < piece.vertices.size(); ++i)
+    moved.row(piece.vertices[i]) *= std::clamp(1 + h[static_cast<Eigen::Index>(i)], 0.5, 2.0);
 }
 
 }  // namespace mien

@@ -37,7 +37,8 @@ std::vector<SourcePoint> find_correspondence(const Registration& registration, c
   const PointsD guide_normals = triangle_normals(registration.guide, source.triangles);
   const PointsD normals = vertex_normals(target.positions, target.triangles);
   const double normal_length = options.normal_length * registration.unit;
-  const PointsD weighed_normals = normal_length * vertex_normals(registration.guide, source.triangles);
+  const SurfaceQuery::Attributes weighed_normals =
+      guide.with(normal_length * vertex_normals(registration.guide, source.triangles));
   const auto triangle_openness = [&](int t) {
     double sum = 0;
     for (int k = 0; k < 3; ++k) sum += registration.source_openness[source.triangles(t, k)] / 3;

@@ -1,5 +1,6 @@
 #include "mien/transfer/shared_uvs.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <limits>
 
@@ -18,6 +19,8 @@ constexpr double inward = 1e-4;
 /// Triangles that are asked whether another one covers them; more of them than this share: the layout lies on itself.
 constexpr std::size_t most_asked = 2000;
 constexpr double most_covered = 0.02, most_apart = 1e-3;
+/// Of a layout's diagonal: vertices of a fine level at its edge may be missing on a coarse one.
+constexpr double most_box_apart = 0.05;
 
 Eigen::Vector3d lift(const Eigen::Vector2d& uv) {
   return {uv.x(), uv.y(), 0};
@@ -126,8 +129,19 @@ Places find_places(const UvLayout& asking, std::size_t vertices, const Charts& c
   return places;
 }
 
-bool has_uvs(const UvLayout& layout) {
-  return std::any_of(layout.has_uv.begin(), layout.has_uv.end(), [](char has) { return has != 0; });
+Eigen::AlignedBox2d box_of(const UvLayout& layout) {
+  Eigen::AlignedBox2d box;
+  for (std::size_t t = 0; t < layout.uvs.size(); ++t)
+    for (std::size_t k = 0; k < 3 && layout.has_uv[t]; ++k) box.extend(layout.uvs[t][k]);
+  return box;
+}
+
+/// What layouts that are shared surely are: in the same place of the image.
+bool may_be_shared(const UvLayout& one, const UvLayout& other) {
+  const Eigen::AlignedBox2d a = box_of(one), b = box_of(other);
+  if (a.isEmpty() || b.isEmpty()) return false;
+  const double apart = (a.min() - b.min()).cwiseAbs().maxCoeff() + (a.max() - b.max()).cwiseAbs().maxCoeff();
+  return apart <= most_box_apart * std::max(a.diagonal().norm(), b.diagonal().norm());
 }
 
 }  // namespace
@@ -135,7 +149,7 @@ bool has_uvs(const UvLayout& layout) {
 std::optional<SharedUvs> find_shared_uvs(const UvLayout& source, const UvLayout& target,
                                          const PointsD& target_positions, const PointsD& expected,
                                          double reach, const SharedUvsOptions& options) {
-  if (!has_uvs(source) || !has_uvs(target)) return std::nullopt;
+  if (!may_be_shared(source, target)) return std::nullopt;
   const Charts source_charts(source), target_charts(target);
   if (source_charts.lies_on_itself() || target_charts.lies_on_itself()) return std::nullopt;
   const Places ahead =

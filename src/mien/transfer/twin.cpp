@@ -19,7 +19,7 @@ namespace mien {
 namespace {
 
 constexpr double least_cosine = 0.3;
-constexpr std::size_t glances = 400, samples = 1500;
+constexpr std::size_t glances = 400, first_samples = 400, samples = 1500;
 constexpr int most_rounds = 60, first_rounds = 8;
 /// Of the box: a median distance above it after the first rounds is another face.
 constexpr double hopeless = 3e-3;
@@ -109,15 +109,18 @@ double improve(const SurfaceQuery& source, const PointsD& normals, const Surface
 /// Improves a placement until it stands; false when it comes to nothing.
 bool refine(const SurfaceQuery& source, const PointsD& normals, const Surface& target, double tolerance,
             Similarity& to_source) {
-  const auto rows = choose(target.positions.rows(), samples);
-  if (rows.size() < 7) return false;
+  const auto few = choose(target.positions.rows(), first_samples),
+             many = choose(target.positions.rows(), samples);
+  if (few.size() < 7) return false;
   const double size = diagonal(target.positions);
   double last = std::numeric_limits<double>::infinity();
   for (int round = 0; round < most_rounds; ++round) {
-    const double middle =
-        improve(source, normals, target, rows, 0.1 * tolerance * to_source.scale, to_source);
-    if (round >= first_rounds && middle > hopeless * size * to_source.scale) return false;
-    if (round > 2 && middle < 1e-3 * tolerance * to_source.scale) return true;
+    const double middle = improve(source, normals, target, round < first_rounds ? few : many,
+                                  0.1 * tolerance * to_source.scale, to_source);
+    if (round + 1 >= first_rounds && middle > hopeless * size * to_source.scale) return false;
+    // What is one surface comes together fast; what is alike stays apart.
+    if (round >= first_rounds && middle > 0.9 * last && middle >= tolerance * to_source.scale) return false;
+    if (round >= first_rounds && middle < 1e-3 * tolerance * to_source.scale) return true;
     if (round > first_rounds && middle > 0.999 * last && middle < tolerance * to_source.scale) return true;
     last = middle;
   }
@@ -169,7 +172,7 @@ Twin look(const SurfaceQuery& source, const PointsD& source_normals, const Surfa
 std::optional<Twin> find_twin(const Surface& source, const Surface& target,
                               const std::vector<Similarity>& starts, const TwinOptions& options) {
   if (source.triangles.rows() == 0 || target.positions.rows() == 0) return std::nullopt;
-  const SurfaceQuery query(source.positions, source.triangles);
+  const SurfaceQuery query(source.positions, source.triangles, SurfaceQuery::Build::fast);
   const PointsD normals = triangle_normals(source.positions, source.triangles);
   const double tolerance = options.tolerance * diagonal(target.positions);
   const double hope = options.least_share / 2;

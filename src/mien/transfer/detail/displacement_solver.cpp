@@ -13,7 +13,7 @@ namespace mien::detail {
 namespace {
 
 constexpr double bending_unit = 1e-6;
-constexpr double tolerance = 1e-3;
+constexpr double tolerance = 3e-3;
 constexpr int most_steps = 30;
 
 /// The turn to use CHOLMOD. Debian's serial OpenBLAS under it has buffers that callers share, so that registrations

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "mien/core/parallel.h"
 
@@ -42,16 +43,21 @@ Eigen::MatrixXd facing(const PointsD& positions, const PointsD& normals, double 
 
 Eigen::VectorXd far_from(const Eigen::MatrixXd& landmarks, const Eigen::MatrixXd& places, double near,
                          double far) {
-  Eigen::VectorXd result = Eigen::VectorXd::Ones(places.rows());
-  if (landmarks.rows() == 0) return result;
-  parallel_for(static_cast<std::size_t>(places.rows()), 256, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t v = begin; v < end; ++v) {
-      const Eigen::Index row = static_cast<Eigen::Index>(v);
-      const double distance =
-          std::sqrt((landmarks.rowwise() - places.row(row)).rowwise().squaredNorm().minCoeff());
-      const double t = std::clamp((distance - near) / (far - near), 0.0, 1.0);
-      result[row] = t * t * (3 - 2 * t);
+  const Eigen::Index count = places.rows();
+  if (landmarks.rows() == 0) return Eigen::VectorXd::Ones(count);
+  Eigen::VectorXd result(count);
+  parallel_for(static_cast<std::size_t>(count), 256, [&](std::size_t begin, std::size_t end) {
+    const auto first = static_cast<Eigen::Index>(begin), rows = static_cast<Eigen::Index>(end - begin);
+    Eigen::ArrayXd least = Eigen::ArrayXd::Constant(rows, std::numeric_limits<double>::infinity());
+    Eigen::ArrayXd square(rows);
+    for (Eigen::Index l = 0; l < landmarks.rows(); ++l) {
+      square.setZero();
+      for (Eigen::Index k = 0; k < places.cols(); ++k)
+        square += (places.col(k).segment(first, rows).array() - landmarks(l, k)).square();
+      least = least.min(square);
     }
+    const Eigen::ArrayXd t = ((least.sqrt() - near) / (far - near)).max(0).min(1);
+    result.segment(first, rows) = (t * t * (3 - 2 * t)).matrix();
   });
   return result;
 }

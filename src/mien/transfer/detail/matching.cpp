@@ -49,10 +49,11 @@ std::vector<SurfaceQuery::Hit> nearest(const MatchSurface& from, const MatchSurf
                                        const MatchOptions& options, std::vector<int>& last) {
   std::vector<SurfaceQuery::Hit> hits(static_cast<std::size_t>(ask.count));
   const bool by_normals = options.normal_length > 0 || options.far_normal_length > 0;
-  PointsD from_normals, to_normals;
+  PointsD from_normals;
+  SurfaceQuery::Attributes to_normals;
   if (by_normals) {
     from_normals = weighed_normals(from, options);
-    to_normals = weighed_normals(to, options);
+    to_normals = to.query.with(weighed_normals(to, options));
   }
   last.resize(static_cast<std::size_t>(from.positions.rows()), -1);
   parallel_for(hits.size(), 64, [&](std::size_t begin, std::size_t end) {

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "mien/core/error.h"
+#include "mien/core/parallel.h"
 #include "mien/geometry/similarity.h"
 #include "mien/transfer/detail/at.h"
 
@@ -105,14 +106,19 @@ std::map<int, int> DonorFinder::closest_on(const Donors& donors, const PointsD& 
   plan.places.barycentric.clear();
   median_distance = std::numeric_limits<double>::infinity();
   if (!donors.query) return votes;
-  std::vector<double> distance;
-  for (Eigen::Index i = 0; i < positions.rows(); ++i) {
-    const auto hit = donors.query->closest(positions.row(i).transpose());
-    distance.push_back(hit.distance);
-    plan.places.triangle.push_back(donors.pieces.triangles[at(hit.triangle)]);
-    plan.places.barycentric.push_back(hit.barycentric);
-    ++votes[in_.source.piece[at(in_.source.triangles(plan.places.triangle.back(), 0))]];
-  }
+  const auto count = static_cast<std::size_t>(positions.rows());
+  std::vector<double> distance(count);
+  plan.places.triangle.resize(count);
+  plan.places.barycentric.resize(count);
+  parallel_for(count, 64, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const auto hit = donors.query->closest(positions.row(static_cast<Eigen::Index>(i)).transpose());
+      distance[i] = hit.distance;
+      plan.places.triangle[i] = donors.pieces.triangles[at(hit.triangle)];
+      plan.places.barycentric[i] = hit.barycentric;
+    }
+  });
+  for (const int t : plan.places.triangle) ++votes[in_.source.piece[at(in_.source.triangles(t, 0))]];
   std::nth_element(distance.begin(), distance.begin() + static_cast<long>(distance.size() / 2),
                    distance.end());
   median_distance = distance[distance.size() / 2];
@@ -134,7 +140,6 @@ PointsD DonorFinder::box_onto_box(const PointsD& points, const PointsD& others) 
 /// elsewhere in the head, be longer and point another way.
 PointsD DonorFinder::lay_on_donors(const SurfaceQuery& donors, const PointsD& positions,
                                    const PiecePlan& plan) const {
-  if (!plan.same_kind || (plan.kind != PieceKind::tongue && plan.kind != PieceKind::lash)) return positions;
   const PointsD boxed = box_onto_box(positions, in_.warped_source(plan.donor_vertices, Eigen::all));
   if (plan.kind != PieceKind::tongue) return boxed;
   try {
@@ -159,7 +164,13 @@ bool DonorFinder::find(PiecePlan& plan) {
     plan.donor_vertices.insert(plan.donor_vertices.end(), members.begin(), members.end());
   }
   const Donors& donors = of(group);
-  closest_on(donors, lay_on_donors(*donors.query, positions, plan), plan, distance);
+  const bool laid = plan.same_kind && (plan.kind == PieceKind::tongue || plan.kind == PieceKind::lash);
+  const bool all_in_group =
+      std::all_of(votes.begin(), votes.end(), [&](const auto& vote) { return group[at(vote.first)]; });
+  if (laid)
+    closest_on(donors, lay_on_donors(*donors.query, positions, plan), plan, distance);
+  else if (!all_in_group)
+    closest_on(donors, positions, plan, distance);
   return true;
 }
 

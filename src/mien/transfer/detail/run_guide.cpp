@@ -1,6 +1,7 @@
 // What of the source lies where on the target: the guide, each target vertex's place on the source, the pieces inside.
 #include <algorithm>
 #include <optional>
+#include <utility>
 
 #include "mien/core/error.h"
 #include "mien/transfer/detail/assemble_target.h"
@@ -189,18 +190,23 @@ void Run::place_pieces_by_uvs() {
   };
   const std::vector<Piece> sources = pieces_of(source_, source_pool_, source_skin_),
                            targets = pieces_of(target_, target_pool_, target_skin_);
+  const double reach = uv_reach * registration_.unit;
   for (const Piece& from : sources) {
+    if (!from.uvs) continue;
     const PointsD expected = warped_source_(from.surface.vertices, Eigen::all);
-    double nearest = uv_reach * registration_.unit;
+    std::vector<std::pair<double, const Piece*>> near;
     for (const Piece& to : targets) {
-      const PointsD& positions = to.surface.surface.positions;
-      const double apart = (positions.colwise().mean() - expected.colwise().mean()).norm();
-      if (!from.uvs || !to.uvs || apart >= nearest) continue;
+      const double apart = (to.surface.surface.positions.colwise().mean() - expected.colwise().mean()).norm();
+      if (to.uvs && apart < reach) near.emplace_back(apart, &to);
+    }
+    std::stable_sort(near.begin(), near.end(),
+                     [](const auto& a, const auto& b) { return a.first < b.first; });
+    for (const auto& [apart, to] : near) {
       const auto shared =
-          find_shared_uvs(*from.uvs, *to.uvs, positions, expected, uv_reach * registration_.unit);
+          find_shared_uvs(*from.uvs, *to->uvs, to->surface.surface.positions, expected, reach);
       if (!shared) continue;
-      nearest = apart;
       warped_source_(from.surface.vertices, Eigen::all) = shared->guide;
+      break;
     }
   }
 }
