@@ -157,6 +157,7 @@ void Run::carry_shapes() {
     const double exaggeration = exaggeration_of(shape.name);
     const PointsD exaggerated = exaggeration * pooled;
     PointsD skin = exaggeration * PointsD((*carrier_)(moved));
+    if (evening_) skin = *evening_ * skin;
     if (close_lids && contact.closes_lid(s)) keep_out_of_eyes(balls, target_surface_.surface.positions, skin);
     PointsD target = PointsD::Zero(target_pool_.positions.rows(), 3);
     for (std::size_t r = 0; r < target_surface_.vertices.size(); ++r)

@@ -24,6 +24,9 @@ PointsD rows(const PointsD& points, const std::vector<int>& which) {
   return result;
 }
 
+/// A piece that is closer to the skin on average lies on it, in face sizes.
+constexpr double on_skin_within = 0.02;
+
 /// Gives every vertex well off the skin the place of the nearest vertex that is close to it: a lash's tip moves with its
 /// root, not with whatever skin lies behind it.
 void hold_by_roots(const PieceInput& in, std::vector<double> distance, PiecePlan& plan) {
@@ -206,14 +209,17 @@ std::vector<PiecePlan> plan_pieces(const PieceInput& in) {
     plan.vertices = vertices_of(in.target, p);
     plan.growth = in.similarity.scale;
     const bool found = donors.find(plan);
-    if (found && plan.kind != PieceKind::lash) {
+    const PiecePlaces on_donors = plan.places;
+    const bool on_skin = plan.kind == PieceKind::lash || plan.from_skin;
+    const SkinFit fit = !found || on_skin ? find_skin(in, skin, plan) : SkinFit{};
+    const bool close = fit.mean_distance < on_skin_within * in.unit;
+    if (found && (!on_skin || (plan.from_skin && !close))) {
       plan.way = PiecePlan::Way::donors;
+      plan.places = on_donors;
     } else {
-      if (found && plan.same_kind) plan.weight_donors = plan.places;
-      const SkinFit fit = find_skin(in, skin, plan);
-      const bool worn =
-          plan.kind == PieceKind::lash ||
-          (plan.kind == PieceKind::other && (fit.behind < 0.5 || fit.mean_distance < 0.02 * in.unit));
+      if (found && plan.same_kind) plan.weight_donors = on_donors;
+      const bool worn = plan.kind == PieceKind::lash || plan.from_skin ||
+                        (plan.kind == PieceKind::other && (fit.behind < 0.5 || close));
       if (worn)
         plan.way = PiecePlan::Way::attached;
       else if (plan.kind == PieceKind::eye)

@@ -36,6 +36,7 @@ struct PiecePlan {
   PiecePlaces weight_donors;
   std::vector<double> fade;  ///< attached: 1 on the skin, falling with distance
   bool same_kind = false;    ///< donors: they are what the piece is (a tongue for a tongue), by name or form
+  bool from_skin = false;    ///< donors: the source's skin is among them
   std::vector<int> donor_vertices;  ///< donors: pooled source vertices whose motion is looked at as a whole
   double growth = 1;                ///< how lengths grow there, source to target
 };

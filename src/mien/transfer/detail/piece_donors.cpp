@@ -71,6 +71,10 @@ std::vector<char> choose_group(const PieceInput& in, const std::map<int, int>& v
   return group;
 }
 
+double diagonal(const PointsD& points) {
+  return (points.colwise().maxCoeff() - points.colwise().minCoeff()).norm();
+}
+
 /// Turned and scaled, round after round, to where the closest points are.
 ///   throws  what fit_similarity does: points on one line
 PointsD settle(const SurfaceQuery& query, PointsD points) {
@@ -149,17 +153,69 @@ PointsD DonorFinder::lay_on_donors(const SurfaceQuery& donors, const PointsD& po
   }
 }
 
+/// Whether any of the pieces moves in a shape or hangs on a joint. Lower teeth on which a source has not spent a shape go with
+/// the jaw.
+bool DonorFinder::moves(const std::vector<char>& group) const {
+  for (std::size_t p = 0; p < group.size(); ++p)
+    if (group[p] && in_.source_motion[p].signature.norm() > 0) return true;
+  return false;
+}
+
+double DonorFinder::mean_distance(const std::vector<char>& pieces, const PointsD& positions) {
+  const SurfaceQuery& query = *of(pieces).query;
+  double sum = 0;
+  for (Eigen::Index i = 0; i < positions.rows(); ++i)
+    sum += query.closest(positions.row(i).transpose()).distance;
+  return sum / static_cast<double>(positions.rows());
+}
+
+/// The donors of a piece that nothing names. What is in the mouth is surrounded by skin, and what lies on an eye (a tear, a
+/// shadow) belongs to the lids: so a quarter of the votes speaks for teeth and tongue, and hardly less than all for an eye.
+/// A piece that reaches as far as they do (gums) moves with what is next to each vertex; a smaller one (a tooth) with the
+/// body that is closest to it as a whole, for closed rows of teeth lie side by side.
+std::vector<char> DonorFinder::group_of_unnamed(const std::map<int, int>& votes, const PointsD& positions) {
+  constexpr double least_inside = 0.25, least_eye = 0.8, as_far = 0.7;
+  std::vector<char> skin(in_.source_skin.size(), 0), eyes = skin, inside = skin;
+  double inside_votes = 0, eye_votes = 0;
+  for (const auto& [piece, count] : votes) {
+    const bool eye = kinds_[at(piece)] == PieceKind::eye;
+    (in_.source_skin[at(piece)] ? skin : eye ? eyes : inside)[at(piece)] = 1;
+    if (!in_.source_skin[at(piece)]) (eye ? eye_votes : inside_votes) += count;
+  }
+  const auto all = static_cast<double>(positions.rows());
+  if (eye_votes >= least_eye * all) return eyes;
+  if (inside_votes < least_inside * all) return eye_votes + inside_votes < all ? skin : eyes;
+  const PointsD donors = in_.warped_source(of(inside).pieces.vertices, Eigen::all);
+  if (diagonal(positions) > as_far * diagonal(donors)) return inside;
+  std::vector<char> best;
+  double least = std::numeric_limits<double>::infinity();
+  for (const auto& [leader, count] : votes) {
+    if (!inside[at(leader)]) continue;
+    std::vector<char> body(inside.size(), 0);
+    for (std::size_t p = 0; p < inside.size(); ++p)
+      body[p] = inside[p] && moves_alike(in_, leader, static_cast<int>(p));
+    const double distance = mean_distance(body, positions);
+    if (distance >= least) continue;
+    least = distance;
+    best = body;
+  }
+  return best;
+}
+
 bool DonorFinder::find(PiecePlan& plan) {
   const std::string& name = in_.target.piece_name[at(plan.piece)];
   const PointsD positions = in_.target.positions(plan.vertices, Eigen::all);
   double distance = 0;
   const auto votes = closest_on(of(donor_pieces(in_, plan.kind, name, kinds_)), positions, plan, distance);
   if (votes.empty() || distance > 0.15 * in_.unit) return false;
-  const auto group = choose_group(in_, votes, plan, row_from_name(name));
+  const auto group = plan.kind == PieceKind::other ? group_of_unnamed(votes, positions)
+                                                   : choose_group(in_, votes, plan, row_from_name(name));
+  if (plan.kind == PieceKind::teeth && row_from_name(name) < 0 && !moves(group)) return false;
   plan.same_kind = plan.kind != PieceKind::other;
   for (std::size_t p = 0; p < group.size(); ++p) {
     if (!group[p]) continue;
     plan.same_kind = plan.same_kind && kinds_[p] == plan.kind;
+    plan.from_skin = plan.from_skin || in_.source_skin[p];
     const auto members = vertices_of(in_.source, static_cast<int>(p));
     plan.donor_vertices.insert(plan.donor_vertices.end(), members.begin(), members.end());
   }

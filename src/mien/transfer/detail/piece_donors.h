@@ -30,6 +30,9 @@ class DonorFinder {
   const Donors& of(const std::vector<char>& pieces);
   std::map<int, int> closest_on(const Donors& donors, const PointsD& positions, PiecePlan& plan,
                                 double& median_distance) const;
+  bool moves(const std::vector<char>& group) const;
+  double mean_distance(const std::vector<char>& pieces, const PointsD& positions);
+  std::vector<char> group_of_unnamed(const std::map<int, int>& votes, const PointsD& positions);
   PointsD box_onto_box(const PointsD& points, const PointsD& others) const;
   PointsD lay_on_donors(const SurfaceQuery& donors, const PointsD& positions, const PiecePlan& plan) const;
 

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "mien/geometry/laplacian.h"
 #include "mien/geometry/thin_plate_spline.h"
 #include "mien/transfer/carry_skeleton.h"
 #include "mien/transfer/correspondence.h"
@@ -93,6 +94,7 @@ class Run {
   DeltaModel model_ = DeltaModel::automatic;
   std::unique_ptr<ThinPlateSpline> dense_, landmark_spline_;
   std::unique_ptr<AttributeCarrier> carrier_;
+  std::optional<SparseMatrix> evening_;  // of displacements, where closest points say which place is which
   std::unique_ptr<SurfaceQuery> aligned_query_,
       target_query_;             // skins, for control points: aligned source, target
   PointsD warped_source_;        // pooled source vertices on the target

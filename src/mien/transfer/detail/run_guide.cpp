@@ -6,6 +6,7 @@
 #include "mien/core/error.h"
 #include "mien/transfer/detail/assemble_target.h"
 #include "mien/transfer/detail/at.h"
+#include "mien/transfer/detail/evening.h"
 #include "mien/transfer/detail/face_size.h"
 #include "mien/transfer/detail/pool_uvs.h"
 #include "mien/transfer/detail/run.h"
@@ -216,6 +217,8 @@ void Run::find_places() {
   if (!source_.skins.empty())
     source_weights_ = pooled_skin_weights(source_, source_pool_, list_joints(source_));
   carrier_ = std::make_unique<AttributeCarrier>(find_points(), source, target);
+  if (!thesis() && !uvs_ && !twin_)
+    evening_ = evening(carrier_->correspondence(), maps_.aligned, source.triangles, target);
   warp_source();
   piece_motions_ = piece_motions(
       source_pool_, source_skin_, source_.shapes.size(),
