@@ -138,12 +138,6 @@ void expect_sound(const Character& source, const Character& target, const Transf
   EXPECT_EQ(result.report.distance.size(), target.parts.size());
 }
 
-int part_named(const Character& character, const std::string& name) {
-  const int part = find_part(character, name);
-  EXPECT_GE(part, 0) << name;
-  return part;
-}
-
 /// How far a piece's motion is from rigid (and its size), of its motion.
 double bend(const Character& character, int part, std::size_t shape) {
   const PointsD neutral = character.parts[part].mesh.positions.cast<double>();

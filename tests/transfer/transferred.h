@@ -30,6 +30,12 @@ inline PointsD delta_of(const Character& character, std::size_t shape, int part)
   return delta;
 }
 
+inline int part_named(const Character& character, const std::string& name) {
+  const int part = find_part(character, name);
+  EXPECT_GE(part, 0) << name;
+  return part;
+}
+
 /// Root of the squared difference over the root of b's squares, over all parts.
 inline double difference(const Character& a, std::size_t shape_a, const Character& b, std::size_t shape_b) {
   double off = 0, size = 0;

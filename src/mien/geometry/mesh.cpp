@@ -51,12 +51,24 @@ Points vertex_normals(const Points& positions, const Triangles& triangles) {
   return normals;
 }
 
-Box bounding_box(const Points& positions) {
+namespace {
+
+template <class Positions>
+Box box_around(const Positions& positions) {
   Box box;
   if (positions.rows() == 0) return box;
-  box.low = positions.colwise().minCoeff().transpose().cast<double>();
-  box.high = positions.colwise().maxCoeff().transpose().cast<double>();
+  box.low = positions.colwise().minCoeff().transpose().template cast<double>();
+  box.high = positions.colwise().maxCoeff().transpose().template cast<double>();
   return box;
+}
+
+}  // namespace
+
+Box bounding_box(const Points& positions) {
+  return box_around(positions);
+}
+Box bounding_box(const PointsD& positions) {
+  return box_around(positions);
 }
 
 }  // namespace mien

@@ -120,5 +120,6 @@ struct Box {
 };
 /// The box of no points is a point at the origin.
 Box bounding_box(const Points& positions);
+Box bounding_box(const PointsD& positions);
 
 }  // namespace mien

@@ -49,7 +49,7 @@ Eigen::VectorXd openness(const PointsD& positions, const Triangles& triangles, i
   const SurfaceQuery surface(positions, triangles);
   const PointsD normals = vertex_normals(positions, triangles);
   const PointsD directions = hemisphere(rays);
-  const double diagonal = (positions.colwise().maxCoeff() - positions.colwise().minCoeff()).norm();
+  const double diagonal = bounding_box(positions).diagonal();
   const std::vector<int> neighbours = some_neighbours(positions.rows(), triangles);
   Eigen::VectorXd open(positions.rows());
   parallel_for(static_cast<std::size_t>(positions.rows()), 64, [&](std::size_t begin, std::size_t end) {

@@ -86,7 +86,7 @@ ThinPlateSpline::PrincipalWarps warps_of(const PointsD& centres) {
 
 ThinPlateSpline::ThinPlateSpline(const PointsD& from, const PointsD& to, const Options& options) {
   check_landmarks(from, to);
-  const double diagonal = (from.colwise().maxCoeff() - from.colwise().minCoeff()).norm();
+  const double diagonal = bounding_box(from).diagonal();
   shift_ = from.colwise().mean();
   scale_ = diagonal > 0 ? 1 / diagonal : 1;
   centres_ = (from.rowwise() - shift_) * scale_;
@@ -157,7 +157,7 @@ double ThinPlateSpline::bending_energy() const {
 
 ThinPlateSpline::PrincipalWarps ThinPlateSpline::principal_warps(const PointsD& landmarks) {
   check_landmarks(landmarks, landmarks);
-  const double diagonal = (landmarks.colwise().maxCoeff() - landmarks.colwise().minCoeff()).norm();
+  const double diagonal = bounding_box(landmarks).diagonal();
   const PointsD centres =
       (landmarks.rowwise() - landmarks.colwise().mean()) * (diagonal > 0 ? 1 / diagonal : 1);
   check_normalised(centres);

@@ -138,7 +138,7 @@ FoundPlane find_mirror_plane(const Character& character) {
   PointsD samples((whole.positions.rows() + stride - 1) / stride, 3);
   for (Eigen::Index s = 0; s < samples.rows(); ++s) samples.row(s) = whole.positions.row(s * stride);
   const Fitter fitter{samples, query};
-  const Box box = bounding_box(whole.positions.cast<float>());
+  const Box box = bounding_box(whole.positions);
   FoundPlane best;
   double best_distance = std::numeric_limits<double>::infinity();
   for (MirrorPlane plane : starts(samples, box)) {

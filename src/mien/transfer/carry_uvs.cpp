@@ -94,7 +94,7 @@ std::vector<Eigen::Vector2d> corner_uvs(const UvLayout& source, const PointsD& g
       return (b - a).cross(c - a).dot(normal) > 0;
     };
   };
-  const double reach_limit = 0.05 * (positions.colwise().maxCoeff() - positions.colwise().minCoeff()).norm();
+  const double reach_limit = 0.05 * bounding_box(positions).diagonal();
   parallel_for(faces.size(), 64, [&](std::size_t begin, std::size_t end) {
     for (std::size_t f = begin; f < end; ++f) {
       const auto face = faces[f];

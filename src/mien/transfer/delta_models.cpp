@@ -109,7 +109,7 @@ std::vector<int> farthest_points(const PointsD& points, int count) {
 
 ThinPlateSpline dense_spline(const PointsD& aligned, const PointsD& guide, const PointsD& landmarks_from,
                              const PointsD& landmarks_to, std::span<const int> samples) {
-  const double diagonal = (aligned.colwise().maxCoeff() - aligned.colwise().minCoeff()).norm();
+  const double diagonal = bounding_box(aligned).diagonal();
   std::vector<Eigen::RowVector3d> from, to;
   const auto add = [&](const Eigen::RowVector3d& a, const Eigen::RowVector3d& b) {
     const bool near = std::any_of(from.begin(), from.end(), [&](const Eigen::RowVector3d& other) {

@@ -28,7 +28,7 @@ std::string some_names(const std::vector<std::string>& names) {
 
 void require_spread(const std::vector<std::string>& names, const PointsD& positions,
                     const std::string& side) {
-  const double diagonal = (positions.colwise().maxCoeff() - positions.colwise().minCoeff()).norm();
+  const double diagonal = bounding_box(positions).diagonal();
   for (Eigen::Index i = 0; i < positions.rows(); ++i)
     for (Eigen::Index j = 0; j < i; ++j)
       if ((positions.row(i) - positions.row(j)).norm() <= 1e-6 * diagonal)

@@ -157,7 +157,7 @@ Growth growth_of(const Character& source, const Character& target, const ClipMap
   }
   const Similarity whole = fit_similarity(from, to);
   growth.rotation = common_turn(source, target, map).value_or(whole.rotation);
-  const double size = (from.colwise().maxCoeff() - from.colwise().minCoeff()).norm();
+  const double size = bounding_box(from).diagonal();
   const auto local = std::make_shared<MovingSimilarity>(from, to, softness * size);
   growth.scale = [local](const Eigen::Vector3d& x) { return local->at(x).scale; };
   return growth;

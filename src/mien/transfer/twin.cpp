@@ -24,10 +24,6 @@ constexpr int most_rounds = 60, first_rounds = 8;
 /// Of the box: a median distance above it after the first rounds is another face.
 constexpr double hopeless = 3e-3;
 
-double diagonal(const PointsD& positions) {
-  return (positions.colwise().maxCoeff() - positions.colwise().minCoeff()).norm();
-}
-
 PointsD triangle_normals(const PointsD& positions, const Triangles& triangles) {
   PointsD normals(triangles.rows(), 3);
   for (Eigen::Index t = 0; t < triangles.rows(); ++t) {
@@ -112,7 +108,7 @@ bool refine(const SurfaceQuery& source, const PointsD& normals, const Surface& t
   const auto few = choose(target.positions.rows(), first_samples),
              many = choose(target.positions.rows(), samples);
   if (few.size() < 7) return false;
-  const double size = diagonal(target.positions);
+  const double size = bounding_box(target.positions).diagonal();
   double last = std::numeric_limits<double>::infinity();
   for (int round = 0; round < most_rounds; ++round) {
     const double middle = improve(source, normals, target, round < first_rounds ? few : many,
@@ -174,7 +170,7 @@ std::optional<Twin> find_twin(const Surface& source, const Surface& target,
   if (source.triangles.rows() == 0 || target.positions.rows() == 0) return std::nullopt;
   const SurfaceQuery query(source.positions, source.triangles, SurfaceQuery::Build::fast);
   const PointsD normals = triangle_normals(source.positions, source.triangles);
-  const double tolerance = options.tolerance * diagonal(target.positions);
+  const double tolerance = options.tolerance * bounding_box(target.positions).diagonal();
   const double hope = options.least_share / 2;
   const auto fits = [&](const Similarity& to_source) {
     return glance(query, to_source, target, tolerance) >= hope;

@@ -6,7 +6,7 @@ namespace mien::detail {
 
 /// The box around points, grown on every side by `share` of its diagonal.
 inline Box grown_box(const PointsD& points, double share) {
-  Box box = bounding_box(points.cast<float>());
+  Box box = bounding_box(points);
   const double by = share * box.diagonal();
   box.low.array() -= by;
   box.high.array() += by;

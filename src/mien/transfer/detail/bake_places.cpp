@@ -107,7 +107,7 @@ struct PlaceFinder::Part {
 
 PlaceFinder::PlaceFinder(const BakeSurface& guide, const BakeSurface& target)
     : guide_(guide), target_(target), part_of_piece_(at(target.piece_count), nullptr) {
-  const Box box = bounding_box(target.positions.cast<float>());
+  const Box box = bounding_box(target.positions);
   reach_ = 0.06 * box.diagonal();
   std::vector<std::vector<int>> triangles(at(target.piece_count));
   for (Eigen::Index t = 0; t < target.triangles.rows(); ++t)

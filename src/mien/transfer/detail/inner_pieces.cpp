@@ -10,6 +10,7 @@
 #include <cmath>
 #include <limits>
 
+#include "mien/geometry/laplacian.h"
 #include "mien/geometry/surface_query.h"
 #include "mien/transfer/detail/at.h"
 #include "mien/transfer/detail/piece_donors.h"
@@ -24,16 +25,27 @@ PointsD rows(const PointsD& points, const std::vector<int>& which) {
   return result;
 }
 
+/// In face sizes, root included.
+constexpr double largest_tooth = 0.22;
 /// A piece that is closer to the skin on average lies on it, in face sizes.
 constexpr double on_skin_within = 0.02;
 
+PoolSurface one_piece(const Pool& pool, int piece) {
+  std::vector<char> pieces(at(pool.piece_count), 0);
+  pieces[at(piece)] = 1;
+  return select_pieces(pool, pieces);
+}
+
+double closest_third(std::vector<double> distances) {
+  const auto third = distances.begin() + static_cast<long>(distances.size() / 3);
+  std::nth_element(distances.begin(), third, distances.end());
+  return *third;
+}
+
 /// Gives every vertex well off the skin the place of the nearest vertex that is close to it: a lash's tip moves with its
 /// root, not with whatever skin lies behind it.
-void hold_by_roots(const PieceInput& in, std::vector<double> distance, PiecePlan& plan) {
-  std::vector<double> sorted = distance;
-  const auto third = sorted.begin() + static_cast<long>(sorted.size() / 3);
-  std::nth_element(sorted.begin(), third, sorted.end());
-  const double close = *third;
+void hold_by_roots(const PieceInput& in, const std::vector<double>& distance, PiecePlan& plan) {
+  const double close = closest_third(distance);
   for (std::size_t i = 0; i < plan.vertices.size(); ++i) {
     if (distance[i] <= close) continue;
     std::size_t root = i;
@@ -51,14 +63,42 @@ void hold_by_roots(const PieceInput& in, std::vector<double> distance, PiecePlan
   }
 }
 
+/// What is close to the skin hangs on it, and the rest follows over the piece's own surface, as a harmonic field: a film
+/// between the lids goes with both.
+void stretch_between(const PieceInput& in, const std::vector<double>& distance, PiecePlan& plan) {
+  const double close = closest_third(distance);
+  std::vector<SourcePoint> points;
+  for (std::size_t i = 0; i < distance.size(); ++i)
+    points.push_back(
+        {plan.places.triangle[i], plan.places.barycentric[i], distance[i], distance[i] <= close});
+  plan.film = std::make_shared<const AttributeCarrier>(std::move(points), in.target_surface.surface,
+                                                       one_piece(in.target, plan.piece).surface);
+  std::fill(plan.fade.begin(), plan.fade.end(), 1.0);
+}
+
+/// A body (a tooth) encloses its inside; what is worn on the skin is a sheet.
+bool is_solid(const Pool& pool, int piece) {
+  const PoolSurface chosen = one_piece(pool, piece);
+  const std::vector<char> border = boundary_vertices(chosen.vertices.size(), chosen.surface.triangles);
+  return std::none_of(border.begin(), border.end(), [](char on) { return on != 0; });
+}
+
+/// Whether a piece that hangs on the skin rises from it.
+bool stands_off(std::vector<double> distances, double unit) {
+  constexpr double rooted = 0.004, risen = 0.01;
+  std::sort(distances.begin(), distances.end());
+  return distances[distances.size() / 10] < rooted * unit &&
+         distances[distances.size() * 9 / 10] > risen * unit;
+}
+
 struct SkinFit {
   double mean_distance = 0, behind = 0;  // share of vertices that lie behind the skin
+  std::vector<double> distances;         // of each vertex
 };
 
 /// The closest place on the target's skin for every vertex of the piece.
 SkinFit find_skin(const PieceInput& in, const SurfaceQuery& skin, PiecePlan& plan) {
   SkinFit fit;
-  std::vector<double> distances;
   const Triangles& triangles = in.target_surface.surface.triangles;
   const PointsD& positions = in.target_surface.surface.positions;
   plan.places.triangle.clear();
@@ -70,13 +110,11 @@ SkinFit find_skin(const PieceInput& in, const SurfaceQuery& skin, PiecePlan& pla
     const Eigen::Vector3d normal = (corner(1) - corner(0)).cross(corner(2) - corner(0));
     plan.places.triangle.push_back(hit.triangle);
     plan.places.barycentric.push_back(hit.barycentric);
-    distances.push_back(hit.distance);
+    fit.distances.push_back(hit.distance);
     plan.fade.push_back(std::exp(-std::pow(hit.distance / (0.15 * in.unit), 2)));
     fit.mean_distance += hit.distance / static_cast<double>(plan.vertices.size());
     fit.behind += (normal.dot(position - hit.position) < 0) / static_cast<double>(plan.vertices.size());
   }
-  // Brows lie on the skin all along; lashes stand off it.
-  if (is_lash(in.target.piece_name[at(plan.piece)])) hold_by_roots(in, distances, plan);
   return fit;
 }
 
@@ -126,10 +164,11 @@ PointsD carry_from_donors(const PieceInput& in, const PiecePlan& plan, const Poi
            source_delta.row(in.source.triangles(plan.places.triangle[i], k)).transpose();
     result.row(static_cast<Eigen::Index>(i)) = plan.growth * (turn * d).transpose();
   }
-  return result;
+  return plan.rigid ? apply_rigid(fit_rigid(own, result), own) : result;
 }
 
 PointsD carry_from_skin(const PieceInput& in, const PiecePlan& plan, const PointsD& skin_delta) {
+  if (plan.film) return (*plan.film)(skin_delta);
   PointsD result(static_cast<Eigen::Index>(plan.vertices.size()), 3);
   for (std::size_t i = 0; i < plan.vertices.size(); ++i) {
     Eigen::RowVector3d d = Eigen::RowVector3d::Zero();
@@ -193,6 +232,48 @@ Eigen::Matrix3d head_axes(const PieceInput& in) {
   return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(centred.transpose() * centred).eigenvectors();
 }
 
+namespace {
+
+/// Skin is the donor of what is worn on it (a tear, a sheet of lashes), of a small body that nothing else is near (a tooth) and
+/// of more skin (a neck, a bag behind the lips): the first goes with the target's own skin beneath, the second with it as
+/// a whole, the third with the source's.
+PiecePlan::Way way_by_skin(const PieceInput& in, const PiecePlan& plan, const SkinFit& fit) {
+  constexpr double small = 0.5;  // in face sizes
+  const bool is_small =
+      bounding_box(PointsD(in.target.positions(plan.vertices, Eigen::all))).diagonal() < small * in.unit;
+  if (is_small && plan.solid) return PiecePlan::Way::jaw;
+  return fit.mean_distance < on_skin_within * in.unit ? PiecePlan::Way::attached : PiecePlan::Way::donors;
+}
+
+PiecePlan::Way way_without_donors(const PieceInput& in, const PiecePlan& plan, const SkinFit& fit) {
+  if (plan.kind == PieceKind::eye) return PiecePlan::Way::still;
+  const bool on_skin = fit.behind < 0.5 || fit.mean_distance < on_skin_within * in.unit;
+  return plan.kind == PieceKind::other && on_skin && !plan.solid ? PiecePlan::Way::attached
+                                                                 : PiecePlan::Way::jaw;
+}
+
+/// Of a plan that has looked for donors.
+void choose_way(const PieceInput& in, const SurfaceQuery& skin, bool found, PiecePlan& plan) {
+  plan.way = PiecePlan::Way::donors;
+  if (found && plan.kind != PieceKind::lash && !plan.from_skin) return;
+  const PiecePlaces on_donors = plan.places;
+  const SkinFit fit = find_skin(in, skin, plan);
+  if (plan.kind == PieceKind::lash)
+    plan.way = PiecePlan::Way::attached;
+  else
+    plan.way = found ? way_by_skin(in, plan, fit) : way_without_donors(in, plan, fit);
+  if (plan.way == PiecePlan::Way::donors) plan.places = on_donors;
+  if (plan.way != PiecePlan::Way::attached) return;
+  if (found && plan.same_kind) plan.weight_donors = on_donors;
+  // Brows lie on the skin all along; lashes stand off it.
+  if (is_lash(in.target.piece_name[at(plan.piece)]))
+    hold_by_roots(in, fit.distances, plan);
+  else if (plan.kind == PieceKind::other && stands_off(fit.distances, in.unit))
+    stretch_between(in, fit.distances, plan);
+}
+
+}  // namespace
+
 std::vector<PiecePlan> plan_pieces(const PieceInput& in) {
   std::vector<PieceKind> source_kinds;
   for (int p = 0; p < in.source.piece_count; ++p)
@@ -208,25 +289,11 @@ std::vector<PiecePlan> plan_pieces(const PieceInput& in) {
     plan.kind = kind_of(in.target, p, in.unit);
     plan.vertices = vertices_of(in.target, p);
     plan.growth = in.similarity.scale;
-    const bool found = donors.find(plan);
-    const PiecePlaces on_donors = plan.places;
-    const bool on_skin = plan.kind == PieceKind::lash || plan.from_skin;
-    const SkinFit fit = !found || on_skin ? find_skin(in, skin, plan) : SkinFit{};
-    const bool close = fit.mean_distance < on_skin_within * in.unit;
-    if (found && (!on_skin || (plan.from_skin && !close))) {
-      plan.way = PiecePlan::Way::donors;
-      plan.places = on_donors;
-    } else {
-      if (found && plan.same_kind) plan.weight_donors = on_donors;
-      const bool worn = plan.kind == PieceKind::lash || plan.from_skin ||
-                        (plan.kind == PieceKind::other && (fit.behind < 0.5 || close));
-      if (worn)
-        plan.way = PiecePlan::Way::attached;
-      else if (plan.kind == PieceKind::eye)
-        plan.way = PiecePlan::Way::still;
-      else
-        plan.way = PiecePlan::Way::jaw;
-    }
+    plan.solid = is_solid(in.target, p);
+    plan.rigid = plan.solid && plan.kind == PieceKind::other &&
+                 bounding_box(PointsD(in.target.positions(plan.vertices, Eigen::all))).diagonal() <
+                     largest_tooth * in.unit;
+    choose_way(in, skin, donors.find(plan), plan);
     plans.push_back(std::move(plan));
   }
   return plans;
@@ -300,7 +367,8 @@ WeightMatrix carry_piece_rows(const PieceInput& in, const PiecePlan& plan, const
       return mix_rows(source_rows, in.source.triangles, plan.places);
     case PiecePlan::Way::attached:
     case PiecePlan::Way::jaw:
-      return mix_rows(skin_rows, in.target_surface.surface.triangles, plan.places);
+      return plan.film ? (*plan.film)(skin_rows)
+                       : mix_rows(skin_rows, in.target_surface.surface.triangles, plan.places);
     case PiecePlan::Way::still:
       break;
   }

@@ -3,11 +3,13 @@
 /// pieces of the source by name or by where they lie, or follows the skin around it; none is dragged onto the skin.
 
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "mien/geometry/similarity.h"
 #include "mien/transfer/carry_skin_weights.h"
+#include "mien/transfer/correspondence.h"
 #include "mien/transfer/detail/piece_kinds.h"
 #include "mien/transfer/detail/pool.h"
 
@@ -35,8 +37,13 @@ struct PiecePlan {
   /// attached: where the source's own lashes tell which joints move a lash, in the source pool; empty: the skin beneath does
   PiecePlaces weight_donors;
   std::vector<double> fade;  ///< attached: 1 on the skin, falling with distance
-  bool same_kind = false;    ///< donors: they are what the piece is (a tongue for a tongue), by name or form
-  bool from_skin = false;    ///< donors: the source's skin is among them
+  /// attached, of a sheet that hangs on the skin and stands off it: carries from the skin over the sheet; null: each vertex
+  /// goes with its own place
+  std::shared_ptr<const AttributeCarrier> film;
+  bool same_kind = false;  ///< donors: they are what the piece is (a tongue for a tongue), by name or form
+  bool from_skin = false;  ///< donors: the source's skin is among them
+  bool solid = false;      ///< its surface encloses its inside
+  bool rigid = false;      ///< solid and as small as a tooth: moves as a body, whatever its donors do
   std::vector<int> donor_vertices;  ///< donors: pooled source vertices whose motion is looked at as a whole
   double growth = 1;                ///< how lengths grow there, source to target
 };

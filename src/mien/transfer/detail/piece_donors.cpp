@@ -71,8 +71,9 @@ std::vector<char> choose_group(const PieceInput& in, const std::map<int, int>& v
   return group;
 }
 
-double diagonal(const PointsD& points) {
-  return (points.colwise().maxCoeff() - points.colwise().minCoeff()).norm();
+/// Lower teeth, and what nothing names.
+bool may_hang_on_jaw(PieceKind kind, int row) {
+  return (kind == PieceKind::teeth && row < 0) || kind == PieceKind::other;
 }
 
 /// Turned and scaled, round after round, to where the closest points are.
@@ -153,8 +154,8 @@ PointsD DonorFinder::lay_on_donors(const SurfaceQuery& donors, const PointsD& po
   }
 }
 
-/// Whether any of the pieces moves in a shape or hangs on a joint. Lower teeth on which a source has not spent a shape go with
-/// the jaw.
+/// Whether any of the pieces moves in a shape or hangs on a joint. What may hang on the jaw goes with it where the source's
+/// own has been left standing in every shape.
 bool DonorFinder::moves(const std::vector<char>& group) const {
   for (std::size_t p = 0; p < group.size(); ++p)
     if (group[p] && in_.source_motion[p].signature.norm() > 0) return true;
@@ -169,11 +170,26 @@ double DonorFinder::mean_distance(const std::vector<char>& pieces, const PointsD
   return sum / static_cast<double>(positions.rows());
 }
 
+/// Of the donors of a body of `count` vertices those that are bodies, if a tenth of it is next to some.
+void DonorFinder::keep_bodies(const std::map<int, int>& votes, double count,
+                              std::vector<char>& pieces) const {
+  constexpr double least = 0.1;
+  std::vector<char> bodies = pieces;
+  double own = 0;
+  for (const auto& [piece, vote] : votes) {
+    if (!pieces[at(piece)]) continue;
+    bodies[at(piece)] = in_.source_motion[at(piece)].bend <= rigid_bend;
+    if (bodies[at(piece)]) own += vote;
+  }
+  if (own >= least * count) pieces = bodies;
+}
+
 /// The donors of a piece that nothing names. What is in the mouth is surrounded by skin, and what lies on an eye (a tear, a
 /// shadow) belongs to the lids: so a quarter of the votes speaks for teeth and tongue, and hardly less than all for an eye.
-/// A piece that reaches as far as they do (gums) moves with what is next to each vertex; a smaller one (a tooth) with the
-/// body that is closest to it as a whole, for closed rows of teeth lie side by side.
-std::vector<char> DonorFinder::group_of_unnamed(const std::map<int, int>& votes, const PointsD& positions) {
+/// A piece that reaches as far as they do (gums) moves with what is next to each vertex; a smaller one with the body that is
+/// closest to it as a whole, for closed rows of teeth lie side by side.
+std::vector<char> DonorFinder::group_of_unnamed(const std::map<int, int>& votes, const PointsD& positions,
+                                                bool rigid) {
   constexpr double least_inside = 0.25, least_eye = 0.8, as_far = 0.7;
   std::vector<char> skin(in_.source_skin.size(), 0), eyes = skin, inside = skin;
   double inside_votes = 0, eye_votes = 0;
@@ -185,8 +201,9 @@ std::vector<char> DonorFinder::group_of_unnamed(const std::map<int, int>& votes,
   const auto all = static_cast<double>(positions.rows());
   if (eye_votes >= least_eye * all) return eyes;
   if (inside_votes < least_inside * all) return eye_votes + inside_votes < all ? skin : eyes;
+  if (rigid) keep_bodies(votes, all, inside);
   const PointsD donors = in_.warped_source(of(inside).pieces.vertices, Eigen::all);
-  if (diagonal(positions) > as_far * diagonal(donors)) return inside;
+  if (bounding_box(positions).diagonal() > as_far * bounding_box(donors).diagonal()) return inside;
   std::vector<char> best;
   double least = std::numeric_limits<double>::infinity();
   for (const auto& [leader, count] : votes) {
@@ -208,9 +225,9 @@ bool DonorFinder::find(PiecePlan& plan) {
   double distance = 0;
   const auto votes = closest_on(of(donor_pieces(in_, plan.kind, name, kinds_)), positions, plan, distance);
   if (votes.empty() || distance > 0.15 * in_.unit) return false;
-  const auto group = plan.kind == PieceKind::other ? group_of_unnamed(votes, positions)
+  const auto group = plan.kind == PieceKind::other ? group_of_unnamed(votes, positions, plan.rigid)
                                                    : choose_group(in_, votes, plan, row_from_name(name));
-  if (plan.kind == PieceKind::teeth && row_from_name(name) < 0 && !moves(group)) return false;
+  if (may_hang_on_jaw(plan.kind, row_from_name(name)) && !moves(group)) return false;
   plan.same_kind = plan.kind != PieceKind::other;
   for (std::size_t p = 0; p < group.size(); ++p) {
     if (!group[p]) continue;

@@ -32,7 +32,8 @@ class DonorFinder {
                                 double& median_distance) const;
   bool moves(const std::vector<char>& group) const;
   double mean_distance(const std::vector<char>& pieces, const PointsD& positions);
-  std::vector<char> group_of_unnamed(const std::map<int, int>& votes, const PointsD& positions);
+  void keep_bodies(const std::map<int, int>& votes, double count, std::vector<char>& pieces) const;
+  std::vector<char> group_of_unnamed(const std::map<int, int>& votes, const PointsD& positions, bool rigid);
   PointsD box_onto_box(const PointsD& points, const PointsD& others) const;
   PointsD lay_on_donors(const SurfaceQuery& donors, const PointsD& positions, const PiecePlan& plan) const;
 
