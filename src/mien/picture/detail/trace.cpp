@@ -146,22 +146,28 @@ bool Tracer::surface(const RTCRayHit16& rays, int s, Hit& hit) const {
   const Vec flat(rays.hit.Ng_x[s], rays.hit.Ng_y[s], rays.hit.Ng_z[s]);
   const float side = flat.dot(to_eye) < 0 ? -1.f : 1.f;
   const Eigen::Vector3i& t = scene_.triangles[triangle];
+  const Vec outside = side * flat.normalized();
+  // Where a rim folds over (a closed lid's), a corner's normal may belong to the other side: it says nothing about this one.
+  std::array<Vec, 3> normals;
+  for (int k = 0; k < 3; ++k) {
+    const Vec normal = side * scene_.normals[t[k]];
+    normals[static_cast<std::size_t>(k)] = normal.dot(outside) > 0 ? normal : outside;
+  }
   hit.position = hit.normal = Vec::Zero();
   for (int k = 0; k < 3; ++k) {
     hit.position += corners[k] * scene_.positions[t[k]];
-    hit.normal += corners[k] * side * scene_.normals[t[k]];
+    hit.normal += corners[k] * normals[static_cast<std::size_t>(k)];
   }
-  if (hit.normal.squaredNorm() < 1e-12f) hit.normal = side * flat;
   hit.normal.normalize();
   // At silhouettes smooth normals may turn away from the eye: bend them back to grazing.
   const float facing = hit.normal.dot(to_eye);
   if (facing < 0.02f) hit.normal = (hit.normal + (0.02f - facing) * to_eye).normalized();
   Vec lifted = hit.position;
   for (int k = 0; k < 3; ++k) {
-    const Vec normal = side * scene_.normals[t[k]];
+    const Vec& normal = normals[static_cast<std::size_t>(k)];
     lifted -= corners[k] * std::min(0.f, (hit.position - scene_.positions[t[k]]).dot(normal)) * normal;
   }
-  hit.start = lifted + offset * side * flat.normalized();
+  hit.start = lifted + offset * outside;
   const Look& look = looks_[scene_.looks[triangle]];
   hit.base = base_color(look, triangle, corners);
   hit.gloss = scene_.mapped[triangle] ? 0 : look.gloss;
