@@ -93,5 +93,20 @@ TEST(inner_pieces, a_film_between_the_lids_goes_with_both) {
     EXPECT_LT((moved.row(2 * r) - moved.row(2 * r - 2)).norm(), 0.4 * (lid(44) - lid(48)).norm()) << r;
 }
 
+TEST(inner_pieces, what_lies_off_the_skin_goes_with_the_sources_skin) {
+  int film = 0;
+  Character target = with_a_film(made("creature"), film);
+  const auto way = [&] {
+    const TransferReport report = transfer(made("human"), target).report;
+    for (const PieceReport& piece : report.pieces)
+      if (piece.piece == "film") return piece.way;
+    return std::string("none");
+  };
+  EXPECT_EQ(way(), "skin beneath");
+  Points& positions = target.parts[static_cast<std::size_t>(film)].mesh.positions;
+  positions.col(2).array() += 2 * static_cast<float>(bounding_box(positions).diagonal());
+  EXPECT_EQ(way(), "source part");
+}
+
 }  // namespace
 }  // namespace mien::test

@@ -154,11 +154,11 @@ PointsD DonorFinder::lay_on_donors(const SurfaceQuery& donors, const PointsD& po
   }
 }
 
-/// Whether any of the pieces moves in a shape or hangs on a joint. What may hang on the jaw goes with it where the source's
-/// own has been left standing in every shape.
+/// Whether any of the pieces is skin, moves in a shape or hangs on a joint. What may hang on the jaw goes with it where the
+/// source's own has been left standing in every shape.
 bool DonorFinder::moves(const std::vector<char>& group) const {
   for (std::size_t p = 0; p < group.size(); ++p)
-    if (group[p] && in_.source_motion[p].signature.norm() > 0) return true;
+    if (group[p] && (in_.source_skin[p] || in_.source_motion[p].signature.norm() > 0)) return true;
   return false;
 }
 
