@@ -6,7 +6,7 @@
 #include "mien/io/landmark_file.h"
 #include "mien/io/load.h"
 #include "mien/sample/sample.h"
-#include "mien/transfer/twin.h"
+#include "mien/transfer/carry_landmarks.h"
 
 namespace mien::cli {
 namespace {
@@ -45,17 +45,17 @@ void complete(const Side& side, const Character& like, FindLandmarksOptions opti
   sides.push_back({side.file, std::move(found)});
 }
 
-/// Where one is the other with another mesh, landmarks need no finding; those that `to` has stay.
-bool take_landmarks(const Character& from, Character& to) {
-  std::optional<TwinLandmarks> twin = landmarks_of_twin(from, to);
-  if (!twin) return false;
+/// Where it is known which place of the one is which of the other, landmarks need no finding; those that `to` has stay.
+bool take_landmarks(const Character& from, Character& to, bool by_uvs) {
+  std::optional<CarriedLandmarks> carried = carry_landmarks(from, to, by_uvs);
+  if (!carried) return false;
   const auto add = [](auto& own, auto& others) {
     for (auto& other : others)
       if (std::none_of(own.begin(), own.end(), [&](const auto& one) { return one.name == other.name; }))
         own.push_back(std::move(other));
   };
-  add(to.landmarks, twin->landmarks);
-  add(to.curves, twin->curves);
+  add(to.landmarks, carried->landmarks);
+  add(to.curves, carried->curves);
   return true;
 }
 
@@ -76,15 +76,16 @@ std::vector<FoundSide> find_missing(const Side& source, const Side& target, Tran
   if (shared_marks(source.face, target.face) >= enough_pairs) return sides;
   FindLandmarksOptions options;
   options.progress = transfer.progress;
+  const bool by_uvs = transfer.correspondence != Correspondence::surfaces;
   if (marks(source.face) < enough_pairs && marks(target.face) >= enough_pairs) {
     options.arrangement_trust = pair_trust;
-    if (!take_landmarks(target.face, source.face)) complete(source, target.face, options, sides);
+    if (!take_landmarks(target.face, source.face, by_uvs)) complete(source, target.face, options, sides);
   } else {
     if (marks(source.face) < enough_pairs) {
       complete(source, make_sample("human"), options, sides);
       options.like_facing = sides[0].found.facing;
     }
-    if (take_landmarks(source.face, target.face)) return sides;
+    if (take_landmarks(source.face, target.face, by_uvs)) return sides;
     options.arrangement_trust = pair_trust;
     complete(target, source.face, options, sides);
   }

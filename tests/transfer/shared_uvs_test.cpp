@@ -8,6 +8,7 @@
 #include <cmath>
 #include <random>
 
+#include "mien/transfer/carry_landmarks.h"
 #include "transfer/rigged_human.h"
 #include "transfer/transferred.h"
 
@@ -191,6 +192,22 @@ TEST(shared_uvs, a_relative_gets_the_rig_vertex_by_vertex) {
     equal += off < 1e-3;
   }
   EXPECT_GT(equal, from.size() * 99 / 100);
+}
+
+TEST(shared_uvs, a_relative_needs_no_landmarks) {
+  std::vector<int> from;
+  Character target = relative_of_the_human(from);
+  const PointsD wanted = landmark_positions(target);
+  target.landmarks.clear();
+  EXPECT_FALSE(carry_landmarks(made("human"), target, false));
+  EXPECT_FALSE(carry_landmarks(made("human"), bare(made("cartoon"))));
+  const auto carried = carry_landmarks(made("human"), target);
+  ASSERT_TRUE(carried);
+  ASSERT_EQ(carried->landmarks.size(), made("human").landmarks.size());
+  EXPECT_EQ(carried->curves.size(), made("human").curves.size());
+  target.landmarks = carried->landmarks;
+  const double size = bounding_box(target.parts[0].mesh.positions).diagonal();
+  EXPECT_LT((landmark_positions(target) - wanted).rowwise().norm().maxCoeff(), 1e-4 * size);
 }
 
 TEST(shared_uvs, surfaces_can_be_asked_for) {

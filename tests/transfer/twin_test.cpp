@@ -7,6 +7,7 @@
 #include <map>
 #include <random>
 
+#include "mien/transfer/carry_landmarks.h"
 #include "transfer/rigged_human.h"
 #include "transfer/transferred.h"
 
@@ -98,7 +99,7 @@ TEST(find_twin, other_faces_are_none) {
   const mien::Surface human = pooled(made("human")), cartoon = pooled(made("cartoon"));
   EXPECT_FALSE(find_twin(human, cartoon, {Similarity{}}));
   EXPECT_FALSE(find_twin(human, {}, {Similarity{}}));
-  EXPECT_FALSE(landmarks_of_twin(made("human"), made("creature")));
+  EXPECT_FALSE(carry_landmarks(made("human"), made("creature")));
 }
 
 TEST(find_twin, a_turned_and_grown_copy_is_found_from_a_rough_start) {
@@ -167,7 +168,7 @@ TEST(twin, shuffled_vertices_and_triangles_change_nothing) {
 }
 
 TEST(twin, landmarks_need_not_be_given) {
-  const auto marks = landmarks_of_twin(made("human"), without_landmarks(subdivided(made("human"))));
+  const auto marks = carry_landmarks(made("human"), without_landmarks(subdivided(made("human"))));
   ASSERT_TRUE(marks);
   Character marked = bare(subdivided(made("human")));
   marked.landmarks = marks->landmarks;

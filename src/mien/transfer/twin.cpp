@@ -9,11 +9,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "mien/character/landmark_points.h"
 #include "mien/core/parallel.h"
 #include "mien/geometry/laplacian.h"
 #include "mien/geometry/surface_query.h"
-#include "mien/transfer/detail/pool.h"
 
 namespace mien {
 namespace {
@@ -295,30 +293,6 @@ void keep_scale(const std::vector<char>& kept, const PointsD& positions, const T
         kept[static_cast<std::size_t>(v)] ? 0 : query.closest(positions.row(v).transpose()).distance;
     scale[v] = 1 + (scale[v] - 1) * std::min(1.0, away / band);
   }
-}
-
-std::optional<TwinLandmarks> landmarks_of_twin(const Character& source, const Character& target) {
-  const detail::Pool from = detail::pool(source), to = detail::pool(target);
-  const auto twin = find_twin({from.positions, from.triangles}, {to.positions, to.triangles}, {Similarity{}});
-  if (!twin) return std::nullopt;
-  const detail::PoolSurface all =
-      detail::select_pieces(to, std::vector<char>(static_cast<std::size_t>(to.piece_count), 1));
-  const SurfaceQuery query(all.surface.positions, all.surface.triangles);
-  const auto place = [&](const SurfacePoint& point) {
-    const auto part = static_cast<std::size_t>(point.part);
-    const Mesh& mesh = source.parts[part].mesh;
-    const Eigen::Vector3d local = position_of(mesh, mesh.positions, point);
-    const Eigen::Vector3d model = (from.part_matrix[part] * local.homogeneous()).head<3>();
-    return detail::surface_point(to, all, query.closest(twin->placement(model)));
-  };
-  TwinLandmarks result;
-  for (const Landmark& landmark : source.landmarks)
-    result.landmarks.push_back({landmark.name, place(landmark.at)});
-  for (const LandmarkCurve& curve : source.curves) {
-    result.curves.push_back({curve.name, {}, curve.count});
-    for (const SurfacePoint& point : curve.points) result.curves.back().points.push_back(place(point));
-  }
-  return result;
 }
 
 }  // namespace mien

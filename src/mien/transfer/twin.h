@@ -51,13 +51,4 @@ WeightMatrix with_twin_rows(const Twin& twin, const Triangles& triangles, const 
 void keep_scale(const std::vector<char>& kept, const PointsD& positions, const Triangles& triangles,
                 double unit, Eigen::VectorXd& scale);
 
-/// Landmarks and curves of `source` on `target`, where the two are one surface in one place (or nearly: what a few turns and
-/// moves bring there); nothing otherwise. No landmarks on the target are needed.
-///   throws  what `landmark_points` refuses
-struct TwinLandmarks {
-  std::vector<Landmark> landmarks;
-  std::vector<LandmarkCurve> curves;
-};
-std::optional<TwinLandmarks> landmarks_of_twin(const Character& source, const Character& target);
-
 }  // namespace mien
