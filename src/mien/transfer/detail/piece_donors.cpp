@@ -51,6 +51,7 @@ bool moves_alike(const PieceInput& in, int a, int b) {
 /// than upper), else the one with most votes.
 std::vector<char> choose_group(const PieceInput& in, const std::map<int, int>& votes, const PiecePlan& plan,
                                int row) {
+  constexpr double most_of = 0.8;
   int best = -1;
   double best_score = -std::numeric_limits<double>::infinity();
   for (const auto& [leader, own] : votes) {
@@ -66,8 +67,11 @@ std::vector<char> choose_group(const PieceInput& in, const std::map<int, int>& v
     best_score = score;
     best = leader;
   }
+  // Lashes of both lids, or both eyes, may be one piece: each hair then goes with its own.
+  const bool all =
+      plan.kind == PieceKind::lash && best_score < most_of * static_cast<double>(plan.vertices.size());
   std::vector<char> group(in.source_skin.size(), 0);
-  for (const auto& [other, more] : votes) group[at(other)] = moves_alike(in, best, other);
+  for (const auto& [other, more] : votes) group[at(other)] = all || moves_alike(in, best, other);
   return group;
 }
 
