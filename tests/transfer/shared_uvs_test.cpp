@@ -215,7 +215,10 @@ TEST(shared_uvs, surfaces_can_be_asked_for) {
   const Character target = relative_of_the_human(from);
   TransferOptions options;
   options.correspondence = Correspondence::surfaces;
-  EXPECT_EQ(transfer(made("human"), target, options).report.correspondence, Correspondence::surfaces);
+  const TransferReport report = transfer(made("human"), target, options).report;
+  EXPECT_EQ(report.correspondence, Correspondence::surfaces);
+  // Its eyes and teeth are the human's, its face is not.
+  EXPECT_THAT(report.deltas.reason, ::testing::Not(HasSubstr("own surface")));
 }
 
 TEST(shared_uvs, asked_for_where_there_are_none_they_are_missed) {

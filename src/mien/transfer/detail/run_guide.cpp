@@ -83,6 +83,11 @@ bool Run::register_twin(const PointsD& from, const PointsD& to) {
   if (!twin_) return false;
   const Surface &source = source_surface_.surface, &target = target_surface_.surface;
   twin_skin_ = twin_of_surfaces(*twin_, source_surface_, target_surface_, source_pool_.triangles.rows());
+  if (twin_skin_.share < TwinOptions{}.least_share) {  // other faces, with the same eyes and teeth
+    twin_.reset();
+    twin_skin_ = {};
+    return false;
+  }
   if (!twin_skin_.whole()) return false;
   registration_.similarity = twin_->placement;
   registration_.unit = face_size(to, target.positions);
