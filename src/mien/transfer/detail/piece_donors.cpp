@@ -75,6 +75,9 @@ std::vector<char> choose_group(const PieceInput& in, const std::map<int, int>& v
   return group;
 }
 
+/// How far donors may be on the median, in face sizes: a piece of the same head; a body in its place.
+constexpr double near_head = 0.15, near_body = 0.05;
+
 /// Lower teeth, and what nothing names.
 bool may_hang_on_jaw(PieceKind kind, int row) {
   return (kind == PieceKind::teeth && row < 0) || kind == PieceKind::other;
@@ -158,12 +161,21 @@ PointsD DonorFinder::lay_on_donors(const SurfaceQuery& donors, const PointsD& po
   }
 }
 
-/// Whether any of the pieces is skin, moves in a shape or hangs on a joint. What may hang on the jaw goes with it where the
-/// source's own has been left standing in every shape.
+/// Whether any of the pieces is skin, moves in a shape or hangs on a joint. What may hang on the jaw and has found what stands
+/// still in every shape goes with the jaw; lower teeth with bodies in their place that do move, where a source keeps its lower
+/// teeth in another part.
 bool DonorFinder::moves(const std::vector<char>& group) const {
   for (std::size_t p = 0; p < group.size(); ++p)
     if (group[p] && (in_.source_skin[p] || in_.source_motion[p].signature.norm() > 0)) return true;
   return false;
+}
+
+std::vector<char> DonorFinder::moving_bodies() const {
+  std::vector<char> bodies(kinds_.size(), 0);
+  for (std::size_t p = 0; p < bodies.size(); ++p)
+    bodies[p] = !in_.source_skin[p] && kinds_[p] != PieceKind::eye && kinds_[p] != PieceKind::lash &&
+                in_.source_motion[p].bend <= rigid_bend && in_.source_motion[p].signature.norm() > 0;
+  return bodies;
 }
 
 double DonorFinder::mean_distance(const std::vector<char>& pieces, const PointsD& positions) {
@@ -227,11 +239,16 @@ bool DonorFinder::find(PiecePlan& plan) {
   const std::string& name = in_.target.piece_name[at(plan.piece)];
   const PointsD positions = in_.target.positions(plan.vertices, Eigen::all);
   double distance = 0;
-  const auto votes = closest_on(of(donor_pieces(in_, plan.kind, name, kinds_)), positions, plan, distance);
-  if (votes.empty() || distance > 0.15 * in_.unit) return false;
-  const auto group = plan.kind == PieceKind::other ? group_of_unnamed(votes, positions, plan.rigid)
-                                                   : choose_group(in_, votes, plan, row_from_name(name));
-  if (may_hang_on_jaw(plan.kind, row_from_name(name)) && !moves(group)) return false;
+  auto votes = closest_on(of(donor_pieces(in_, plan.kind, name, kinds_)), positions, plan, distance);
+  if (votes.empty() || distance > near_head * in_.unit) return false;
+  auto group = plan.kind == PieceKind::other ? group_of_unnamed(votes, positions, plan.rigid)
+                                             : choose_group(in_, votes, plan, row_from_name(name));
+  if (may_hang_on_jaw(plan.kind, row_from_name(name)) && !moves(group)) {
+    if (plan.kind == PieceKind::other) return false;
+    group = moving_bodies();
+    votes = closest_on(of(group), positions, plan, distance);
+    if (votes.empty() || distance > near_body * in_.unit) return false;
+  }
   plan.same_kind = plan.kind != PieceKind::other;
   for (std::size_t p = 0; p < group.size(); ++p) {
     if (!group[p]) continue;

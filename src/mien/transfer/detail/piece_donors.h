@@ -31,6 +31,7 @@ class DonorFinder {
   std::map<int, int> closest_on(const Donors& donors, const PointsD& positions, PiecePlan& plan,
                                 double& median_distance) const;
   bool moves(const std::vector<char>& group) const;
+  std::vector<char> moving_bodies() const;
   double mean_distance(const std::vector<char>& pieces, const PointsD& positions);
   void keep_bodies(const std::map<int, int>& votes, double count, std::vector<char>& pieces) const;
   std::vector<char> group_of_unnamed(const std::map<int, int>& votes, const PointsD& positions, bool rigid);
