@@ -18,13 +18,6 @@
 namespace mien::detail {
 namespace {
 
-PointsD rows(const PointsD& points, const std::vector<int>& which) {
-  PointsD result(static_cast<Eigen::Index>(which.size()), 3);
-  for (std::size_t i = 0; i < which.size(); ++i)
-    result.row(static_cast<Eigen::Index>(i)) = points.row(which[i]);
-  return result;
-}
-
 /// In face sizes, root included.
 constexpr double largest_tooth = 0.22;
 /// A piece that is closer to the skin on average lies on it, in face sizes.
@@ -143,9 +136,9 @@ PointsD apply_rigid(const RigidMotion& motion, const PointsD& positions) {
 }
 
 PointsD carry_from_donors(const PieceInput& in, const PiecePlan& plan, const PointsD& source_delta) {
-  const PointsD rest = rows(in.source.positions, plan.donor_vertices);
-  const PointsD delta = rows(source_delta, plan.donor_vertices);
-  const PointsD own = rows(in.target.positions, plan.vertices);
+  const PointsD rest = in.source.positions(plan.donor_vertices, Eigen::all);
+  const PointsD delta = source_delta(plan.donor_vertices, Eigen::all);
+  const PointsD own = in.target.positions(plan.vertices, Eigen::all);
   const Eigen::Matrix3d& turn = in.similarity.rotation;
   if (!(delta.cwiseAbs().maxCoeff() > 0)) return PointsD::Zero(own.rows(), 3);
   const RigidMotion motion = fit_rigid(rest, delta);
@@ -184,7 +177,7 @@ PointsD carry_from_skin(const PieceInput& in, const PiecePlan& plan, const Point
 PointsD carry_with_jaw(const PieceInput& in, const PiecePlan& plan, const PointsD& skin_delta) {
   PiecePlan beneath = plan;
   std::fill(beneath.fade.begin(), beneath.fade.end(), 1.0);
-  const PointsD own = rows(in.target.positions, plan.vertices);
+  const PointsD own = in.target.positions(plan.vertices, Eigen::all);
   const PointsD delta = carry_from_skin(in, beneath, skin_delta);
   if (!(delta.cwiseAbs().maxCoeff() > 0)) return PointsD::Zero(own.rows(), 3);
   const RigidMotion motion = fit_rigid(own, delta);
@@ -209,9 +202,9 @@ std::vector<PieceMotion> piece_motions(const Pool& source, const std::vector<cha
     const PointsD delta = deltas(s);
     for (std::size_t p = 0; p < count; ++p) {
       if (skin[p]) continue;
-      const PointsD own = rows(delta, members[p]);
+      const PointsD own = delta(members[p], Eigen::all);
       if (!(own.cwiseAbs().maxCoeff() > 0)) continue;
-      const RigidMotion rigid = fit_rigid(rows(source.positions, members[p]), own);
+      const RigidMotion rigid = fit_rigid(source.positions(members[p], Eigen::all), own);
       motions[p].signature.segment<3>(3 * static_cast<Eigen::Index>(s)) = rigid.shift;
       bent[p] += std::pow(rigid.residual * own.norm(), 2);
       moved[p] += own.squaredNorm();
@@ -317,8 +310,8 @@ PiecePoints piece_points(const PieceInput& in, const std::vector<PiecePlan>& pla
   };
   for (const PiecePlan& plan : plans) {
     if (plan.way != PiecePlan::Way::donors || !plan.same_kind) continue;
-    add_box(in.similarity(rows(in.source.positions, plan.donor_vertices)), aligned);
-    add_box(rows(in.target.positions, plan.vertices), target);
+    add_box(in.similarity(PointsD(in.source.positions(plan.donor_vertices, Eigen::all))), aligned);
+    add_box(in.target.positions(plan.vertices, Eigen::all), target);
   }
   PiecePoints points{PointsD(static_cast<Eigen::Index>(aligned.size()), 3),
                      PointsD(static_cast<Eigen::Index>(target.size()), 3)};
