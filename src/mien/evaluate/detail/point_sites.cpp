@@ -69,7 +69,7 @@ int PointSites::add_site(const Character& character, int part, int vertex, Known
   site.is_dual_quaternion = skin >= 0 && site.influence_begin != site.influence_end &&
                             character.skins[skin].method == SkinningMethod::dual_quaternion;
   std::stable_sort(influences.begin() + site.influence_begin, influences.end(),
-                   [](const Influence& a, const Influence& b) { return a.weight > b.weight; });
+                   [](const SiteInfluence& a, const SiteInfluence& b) { return a.weight > b.weight; });
   sites.push_back(site);
   return found->second;
 }

@@ -27,7 +27,7 @@ struct Delta {
   Eigen::Vector3d move;
 };
 
-struct Influence {
+struct SiteInfluence {
   int carrier = 0;
   double weight = 1;
 };
@@ -59,7 +59,7 @@ struct PointSites {
   std::vector<Eigen::Matrix3d> to_part;  // by column: model space vectors to the part's space
   std::vector<SiteObject> objects;
   std::vector<ControlShare> shares;
-  std::vector<Influence> influences;  // the strongest of a site first
+  std::vector<SiteInfluence> influences;  // the strongest of a site first
   std::vector<Term> terms;
   JointChain chain;
 
