@@ -39,32 +39,20 @@ TEST(inner_pieces, teeth_without_names_move_with_teeth) {
   EXPECT_LT(bend(target.parts[static_cast<std::size_t>(lower)].mesh.positions.cast<double>(), got), 1e-3);
 }
 
-/// The human with nothing but shapes.
-Character shapes_alone() {
-  Character human = made("human");
-  human.skins.clear();
-  human.clips.clear();
-  for (Part& part : human.parts) {
-    part.skin = -1;
-    part.skin_weights = {};
-  }
-  return human;
-}
-
 TEST(inner_pieces, lower_teeth_are_found_under_another_name_where_they_move) {
-  Character source = shapes_alone();
+  Character source = without_joints(made("human"));
   source.parts[static_cast<std::size_t>(part_named(source, "teethLower"))].name = "bits";
   source.parts[static_cast<std::size_t>(part_named(source, "teethUpper"))].name = "teeth";
   const Character& target = made("creature");
   const int lower = part_named(target, "teethLower");
-  const PointsD wanted = opened(transfer(shapes_alone(), target).character, lower),
+  const PointsD wanted = opened(transfer(without_joints(made("human")), target).character, lower),
                 got = opened(transfer(source, target).character, lower);
   ASSERT_GT(wanted.norm(), 0);
   EXPECT_LT((got - wanted).norm(), 0.05 * wanted.norm());
 }
 
 TEST(inner_pieces, lower_teeth_go_with_the_jaw_where_the_sources_stand_still) {
-  Character source = shapes_alone();
+  Character source = without_joints(made("human"));
   const int own = part_named(source, "teethLower");
   for (Shape& shape : source.shapes)
     std::erase_if(shape.parts, [&](const PartDelta& delta) { return delta.part == own; });

@@ -26,19 +26,6 @@ Character without_shapes(Character character) {
   return character;
 }
 
-Character without_joints(Character character) {
-  character.skins.clear();
-  character.clips.clear();
-  character.objects.clear();
-  character.constraints.clear();
-  character.controls.clear();
-  for (Part& part : character.parts) {
-    part.skin = -1;
-    part.skin_weights = {};
-  }
-  return character;
-}
-
 std::string failure(const Character& source, const Character& target, const TransferOptions& options = {}) {
   return invalid_input_of([&] { transfer(source, target, options); });
 }

@@ -36,6 +36,20 @@ inline int part_named(const Character& character, const std::string& name) {
   return part;
 }
 
+/// Without joints, clips and what may hang on them.
+inline Character without_joints(Character character) {
+  character.skins.clear();
+  character.clips.clear();
+  character.objects.clear();
+  character.constraints.clear();
+  character.controls.clear();
+  for (Part& part : character.parts) {
+    part.skin = -1;
+    part.skin_weights = {};
+  }
+  return character;
+}
+
 /// Root of the squared difference over the root of b's squares, over all parts.
 inline double difference(const Character& a, std::size_t shape_a, const Character& b, std::size_t shape_b) {
   double off = 0, size = 0;

@@ -77,9 +77,7 @@ std::optional<CarriedLandmarks> carried_by_uvs(const Character& source, const Ch
   if (!uvs) return std::nullopt;
   const SurfaceQuery query(skin.surface.positions, skin.surface.triangles);
   for (const int piece : largest_first(to)) {
-    std::vector<char> pieces(at(to.piece_count), 0);
-    pieces[at(piece)] = 1;
-    const PoolSurface there = detail::select_pieces(to, pieces);
+    const PoolSurface there = detail::one_piece(to, piece);
     const auto own = detail::uv_layout(target, to, there);
     if (!own) continue;
     const auto shared = find_shared_uvs(*uvs, *own, there.surface.positions, skin.surface.positions,

@@ -23,12 +23,6 @@ constexpr double largest_tooth = 0.22;
 /// A piece that is closer to the skin on average lies on it, in face sizes.
 constexpr double on_skin_within = 0.02;
 
-PoolSurface one_piece(const Pool& pool, int piece) {
-  std::vector<char> pieces(at(pool.piece_count), 0);
-  pieces[at(piece)] = 1;
-  return select_pieces(pool, pieces);
-}
-
 double closest_third(std::vector<double> distances) {
   const auto third = distances.begin() + static_cast<long>(distances.size() / 3);
   std::nth_element(distances.begin(), third, distances.end());

@@ -106,6 +106,12 @@ PoolSurface select_pieces(const Pool& pool, const std::vector<char>& pieces) {
   return result;
 }
 
+PoolSurface one_piece(const Pool& pool, int piece) {
+  std::vector<char> pieces(static_cast<std::size_t>(pool.piece_count), 0);
+  pieces[static_cast<std::size_t>(piece)] = 1;
+  return select_pieces(pool, pieces);
+}
+
 SurfacePoint surface_point(const Pool& pool, const PoolSurface& surface, const SurfaceQuery::Hit& hit) {
   const auto at = [](int index) { return static_cast<std::size_t>(index); };
   const int triangle = surface.triangles[at(hit.triangle)];

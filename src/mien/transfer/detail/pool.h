@@ -41,6 +41,7 @@ struct PoolSurface {
   std::vector<int> triangles;  ///< #T of the surface: triangle of the pool
 };
 PoolSurface select_pieces(const Pool& pool, const std::vector<char>& pieces);
+PoolSurface one_piece(const Pool& pool, int piece);
 
 /// The point at one corner mix of one triangle of `surface`, as its file numbers it.
 SurfacePoint surface_point(const Pool& pool, const PoolSurface& surface, const SurfaceQuery::Hit& hit);

@@ -187,9 +187,7 @@ void Run::place_pieces_by_uvs() {
     std::vector<Piece> pieces;
     for (int p = 0; p < pool.piece_count; ++p) {
       if (skin[at(p)]) continue;
-      std::vector<char> chosen(skin.size(), 0);
-      chosen[at(p)] = 1;
-      pieces.push_back({select_pieces(pool, chosen), {}});
+      pieces.push_back({one_piece(pool, p), {}});
       pieces.back().uvs = uv_layout(character, pool, pieces.back().surface);
     }
     return pieces;

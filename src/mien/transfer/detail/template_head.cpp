@@ -117,9 +117,8 @@ SoughtHead make_sought_head(const Character& target) {
     const PieceKind kind = kind_from_name(head.pool.piece_name[p]);
     if (kind != PieceKind::skin && kind != PieceKind::other) area[p] *= 1e-6;
   }
-  std::vector<char> chosen(area.size(), 0);
-  chosen[static_cast<std::size_t>(std::max_element(area.begin(), area.end()) - area.begin())] = 1;
-  head.skin = select_pieces(head.pool, chosen);
+  const auto largest = std::max_element(area.begin(), area.end()) - area.begin();
+  head.skin = one_piece(head.pool, static_cast<int>(largest));
   const Surface& surface = head.skin.surface;
   if (surface.triangles.rows() == 0) throw invalid_input("target", "has no faces", "a head");
   head.normals = vertex_normals(surface.positions, surface.triangles);
